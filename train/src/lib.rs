@@ -1,0 +1,1 @@
+//! Training: the GAN of Wang and Wang (2021) with a differentiable cloth, and the ONNX export.
