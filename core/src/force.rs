@@ -3,8 +3,8 @@
 //! Each particle gathers its twelve springs in one fixed order, so that no sum depends on how the work is split. The loop
 //! is plain arithmetic over rows, which the compiler turns into vectors of any width with the same bits.
 
+use crate::lanes::{LANES, Lanes};
 use crate::layout::{Layout, span};
-use crate::math::{max, sqrt};
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
 const TINY: f32 = 1e-30;
@@ -55,12 +55,16 @@ pub(crate) struct View<'a> {
 
 impl Planes<'_> {
     pub fn view(&self) -> View<'_> {
-        View { x: self.x, y: self.y, z: self.z }
+        View {
+            x: self.x,
+            y: self.y,
+            z: self.z,
+        }
     }
 }
 
 /// A row of three planes.
-type Row<'a> = (&'a [f32], &'a [f32], &'a [f32]);
+type Row<'a> = (&'a [[f32; LANES]], &'a [[f32; LANES]], &'a [[f32; LANES]]);
 
 /// v += a dt for the particles of one row, with a = (sum of springs + weight + pull) / M - c v, then the speed limit.
 ///
@@ -80,11 +84,11 @@ pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool
     vz: &mut [f32],
 ) {
     let (at, n, s) = (l.row(row), l.width, l.stride);
-    // Every row below has exactly n numbers, or the function ends here; so no index of the loop can be out of range.
+    // Every row below has exactly n / LANES blocks, or the function ends here; so no index of the loop can be out of range.
     macro_rules! row {
         ($plane:expr, $at:expr) => {{
-            let r = span($plane, $at, n);
-            if r.len() != n {
+            let r = span($plane, $at, n).as_chunks::<LANES>().0;
+            if r.len() != n / LANES {
                 return;
             }
             r
@@ -98,56 +102,98 @@ pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool
     }
     macro_rules! row_if {
         ($on:expr, $plane:expr, $at:expr) => {
-            if $on { row!($plane, $at) } else { row!(inverse, at) }
+            if $on {
+                row!($plane, $at)
+            } else {
+                row!(inverse, at)
+            }
         };
     }
     let here = row3!(at);
     let (r1, l1, d1, u1) = (row3!(at + 1), row3!(at - 1), row3!(at + s), row3!(at - s));
-    let (dr, dl, ur, ul) = (row3!(at + s + 1), row3!(at + s - 1), row3!(at - s + 1), row3!(at - s - 1));
-    let (r2, l2, d2, u2) = (row3!(at + 2), row3!(at - 2), row3!(at + 2 * s), row3!(at - 2 * s));
+    let (dr, dl, ur, ul) = (
+        row3!(at + s + 1),
+        row3!(at + s - 1),
+        row3!(at - s + 1),
+        row3!(at - s - 1),
+    );
+    let (r2, l2, d2, u2) = (
+        row3!(at + 2),
+        row3!(at - 2),
+        row3!(at + 2 * s),
+        row3!(at - 2 * s),
+    );
     let (k_r1, k_l1) = (row!(k.u, at), row!(k.u, at - 1));
     let (k_d1, k_u1) = (row!(k.v, at), row!(k.v, at - s));
-    let (k_dr, k_ul) = (row_if!(SHEAR, k.right, at), row_if!(SHEAR, k.right, at - s - 1));
-    let (k_dl, k_ur) = (row_if!(SHEAR, k.left, at), row_if!(SHEAR, k.left, at - s + 1));
+    let (k_dr, k_ul) = (
+        row_if!(SHEAR, k.right, at),
+        row_if!(SHEAR, k.right, at - s - 1),
+    );
+    let (k_dl, k_ur) = (
+        row_if!(SHEAR, k.left, at),
+        row_if!(SHEAR, k.left, at - s + 1),
+    );
     let (k_r2, k_l2) = (row_if!(BEND, k.bend_u, at), row_if!(BEND, k.bend_u, at - 2));
-    let (k_d2, k_u2) = (row_if!(BEND, k.bend_v, at), row_if!(BEND, k.bend_v, at - 2 * s));
-    let (px, py, pz) =
-        (row_if!(PULL, pull[0], at), row_if!(PULL, pull[1], at), row_if!(PULL, pull[2], at));
+    let (k_d2, k_u2) = (
+        row_if!(BEND, k.bend_v, at),
+        row_if!(BEND, k.bend_v, at - 2 * s),
+    );
+    let (px, py, pz) = (
+        row_if!(PULL, pull[0], at),
+        row_if!(PULL, pull[1], at),
+        row_if!(PULL, pull[2], at),
+    );
     let w = row!(inverse, at);
     macro_rules! row_mut {
         ($plane:expr) => {
             match $plane.get_mut(at..at.wrapping_add(n)) {
-                Some(r) if r.len() == n => r,
-                _ => return,
+                Some(r) => {
+                    let r = r.as_chunks_mut::<LANES>().0;
+                    if r.len() != n / LANES {
+                        return;
+                    }
+                    r
+                }
+                None => return,
             }
         };
     }
     let (vx, vy, vz) = (row_mut!(vx), row_mut!(vy), row_mut!(vz));
-    let c = *c;
-    let (bend_u, bend_v) = (2.0 * c.rest_u, 2.0 * c.rest_v);
-    let speed2 = c.speed * c.speed;
-    for i in 0..n {
-        let (x, y, z) = (here.0[i], here.1[i], here.2[i]);
-        let (mut fx, mut fy, mut fz) = (0.0f32, 0.0f32, 0.0f32);
+    let all = Lanes::all;
+    let (rest_u, rest_v, rest_diagonal) = (all(c.rest_u), all(c.rest_v), all(c.rest_diagonal));
+    let (bend_u, bend_v) = (all(2.0 * c.rest_u), all(2.0 * c.rest_v));
+    let (dt, damping, floor, tiny, one) =
+        (all(c.dt), all(c.damping), all(c.floor), all(TINY), all(1.0));
+    let weight = c.weight.map(all);
+    let (limited, speed, speed2) = (
+        c.speed < f32::INFINITY,
+        all(c.speed),
+        all(c.speed * c.speed),
+    );
+    for i in 0..n / LANES {
+        let load = |r: &[[f32; LANES]]| Lanes(r[i]);
+        let (x, y, z) = (load(here.0), load(here.1), load(here.2));
+        let zero = all(0.0);
+        let (mut fx, mut fy, mut fz) = (zero, zero, zero);
         macro_rules! spring {
             ($other:expr, $k:expr, $rest:expr) => {{
-                let (dx, dy, dz) = ($other.0[i] - x, $other.1[i] - y, $other.2[i] - z);
-                let length = sqrt(max(dx * dx + dy * dy + dz * dz, TINY));
-                let factor = $k[i] * max(1.0 - $rest / length, c.floor);
-                fx += factor * dx;
-                fy += factor * dy;
-                fz += factor * dz;
+                let (dx, dy, dz) = (load($other.0) - x, load($other.1) - y, load($other.2) - z);
+                let length = (dx * dx + dy * dy + dz * dz).max(tiny).sqrt();
+                let factor = load($k) * (one - $rest.over(length)).max(floor);
+                fx = fx + factor * dx;
+                fy = fy + factor * dy;
+                fz = fz + factor * dz;
             }};
         }
-        spring!(r1, k_r1, c.rest_u);
-        spring!(l1, k_l1, c.rest_u);
-        spring!(d1, k_d1, c.rest_v);
-        spring!(u1, k_u1, c.rest_v);
+        spring!(r1, k_r1, rest_u);
+        spring!(l1, k_l1, rest_u);
+        spring!(d1, k_d1, rest_v);
+        spring!(u1, k_u1, rest_v);
         if SHEAR {
-            spring!(dr, k_dr, c.rest_diagonal);
-            spring!(ul, k_ul, c.rest_diagonal);
-            spring!(dl, k_dl, c.rest_diagonal);
-            spring!(ur, k_ur, c.rest_diagonal);
+            spring!(dr, k_dr, rest_diagonal);
+            spring!(ul, k_ul, rest_diagonal);
+            spring!(dl, k_dl, rest_diagonal);
+            spring!(ur, k_ur, rest_diagonal);
         }
         if BEND {
             spring!(r2, k_r2, bend_u);
@@ -155,28 +201,29 @@ pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool
             spring!(d2, k_d2, bend_v);
             spring!(u2, k_u2, bend_v);
         }
-        fx += c.weight[0];
-        fy += c.weight[1];
-        fz += c.weight[2];
+        (fx, fy, fz) = (fx + weight[0], fy + weight[1], fz + weight[2]);
         if PULL {
-            fx += px[i];
-            fy += py[i];
-            fz += pz[i];
+            (fx, fy, fz) = (fx + load(px), fy + load(py), fz + load(pz));
         }
-        let (ax, ay, az) = (w[i] * fx - c.damping * vx[i], w[i] * fy - c.damping * vy[i], w[i] * fz - c.damping * vz[i]);
-        let (sx, sy, sz) = (vx[i] + ax * c.dt, vy[i] + ay * c.dt, vz[i] + az * c.dt);
-        // sqrt(a^2) = a exactly, so the factor is exactly 1 below the limit
-        let scale = if c.speed < f32::INFINITY { c.speed / sqrt(max(sx * sx + sy * sy + sz * sz, speed2)) } else { 1.0 };
-        vx[i] = sx * scale;
-        vy[i] = sy * scale;
-        vz[i] = sz * scale;
+        let (ux, uy, uz, w) = (Lanes(vx[i]), Lanes(vy[i]), Lanes(vz[i]), load(w));
+        let mut sx = ux + (w * fx - damping * ux) * dt;
+        let mut sy = uy + (w * fy - damping * uy) * dt;
+        let mut sz = uz + (w * fz - damping * uz) * dt;
+        if limited {
+            // sqrt(a^2) = a exactly, so the factor is exactly 1 below the limit
+            let scale = speed.over((sx * sx + sy * sy + sz * sz).max(speed2).sqrt());
+            (sx, sy, sz) = (sx * scale, sy * scale, sz * scale);
+        }
+        (vx[i], vy[i], vz[i]) = (sx.0, sy.0, sz.0);
     }
 }
 
 /// x += v dt for the particles of one row.
 pub(crate) fn position_row(l: &Layout, row: usize, dt: f32, x: &mut [f32], v: &[f32]) {
     let at = l.row(row);
-    let Some(x) = x.get_mut(at..at + l.width) else { return };
+    let Some(x) = x.get_mut(at..at + l.width) else {
+        return;
+    };
     for (x, v) in x.iter_mut().zip(span(v, at, l.width)) {
         *x += v * dt;
     }

@@ -35,6 +35,7 @@ mod force;
 mod grid;
 mod hash;
 mod inertia;
+mod lanes;
 mod layout;
 mod math;
 pub mod noise;

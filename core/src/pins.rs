@@ -21,7 +21,11 @@ pub(crate) struct Pin {
 impl Pins<'_> {
     pub fn get(&self, i: usize) -> Pin {
         let n = |j: usize| read(self.numbers, i * PIN_NUMBERS + j);
-        Pin { particle: n(0) as usize, from: [n(1), n(2), n(3)], to: [n(4), n(5), n(6)] }
+        Pin {
+            particle: n(0) as usize,
+            from: [n(1), n(2), n(3)],
+            to: [n(4), n(5), n(6)],
+        }
     }
 
     pub fn set(&mut self, i: usize, pin: Pin) {
@@ -68,7 +72,9 @@ impl Cloth<'_> {
     /// Errors: [`Error::NoSuchParticle`], [`Error::TooManyPins`].
     pub fn pin(&mut self, particle: usize) -> Result<(), Error> {
         let at = self.layout.place(particle)?;
-        let Err(place) = self.pins.find(particle) else { return Ok(()) };
+        let Err(place) = self.pins.find(particle) else {
+            return Ok(());
+        };
         if self.pins.count >= self.pins.capacity {
             return Err(Error::TooManyPins);
         }
@@ -78,7 +84,14 @@ impl Cloth<'_> {
             let previous = self.pins.get(i - 1);
             self.pins.set(i, previous);
         }
-        self.pins.set(place, Pin { particle, from: here, to: here });
+        self.pins.set(
+            place,
+            Pin {
+                particle,
+                from: here,
+                to: here,
+            },
+        );
         self.set_velocity_at(at, [0.0; 3]);
         self.stale = true;
         Ok(())
@@ -91,7 +104,9 @@ impl Cloth<'_> {
     /// 1e6 m from the cloth's origin).
     pub fn move_pin(&mut self, particle: usize, world_m: Vector3<f64>) -> Result<(), Error> {
         self.layout.place(particle)?;
-        let Ok(place) = self.pins.find(particle) else { return Err(Error::NotPinned) };
+        let Ok(place) = self.pins.find(particle) else {
+            return Err(Error::NotPinned);
+        };
         let to = self.to_local(world_m)?;
         let pin = self.pins.get(place);
         self.pins.set(place, Pin { to, ..pin });
@@ -103,7 +118,9 @@ impl Cloth<'_> {
     /// Errors: [`Error::NoSuchParticle`], [`Error::NotPinned`].
     pub fn unpin(&mut self, particle: usize) -> Result<(), Error> {
         self.layout.place(particle)?;
-        let Ok(place) = self.pins.find(particle) else { return Err(Error::NotPinned) };
+        let Ok(place) = self.pins.find(particle) else {
+            return Err(Error::NotPinned);
+        };
         for i in place + 1..self.pins.count {
             let next = self.pins.get(i);
             self.pins.set(i - 1, next);
@@ -128,7 +145,9 @@ impl Cloth<'_> {
         let rate = self.def.rate_hz;
         for i in 0..self.pins.count {
             let Pin { particle, from, to } = self.pins.get(i);
-            let Ok(at) = self.layout.place(particle) else { continue };
+            let Ok(at) = self.layout.place(particle) else {
+                continue;
+            };
             let mut here = to;
             let mut velocity = [0.0; 3];
             for a in 0..3 {
@@ -147,7 +166,13 @@ impl Cloth<'_> {
     pub(crate) fn finish_pins(&mut self) {
         for i in 0..self.pins.count {
             let pin = self.pins.get(i);
-            self.pins.set(i, Pin { from: pin.to, ..pin });
+            self.pins.set(
+                i,
+                Pin {
+                    from: pin.to,
+                    ..pin
+                },
+            );
         }
     }
 }
