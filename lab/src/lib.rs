@@ -1,1 +1,6 @@
-//! lab
+//! Scenes, fabrics, metrics and pictures, shared by the program, the tests, the benches and training.
+
+pub mod compare;
+pub mod fabric;
+pub mod metrics;
+pub mod scene;

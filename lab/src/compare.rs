@@ -1,0 +1,202 @@
+//! The same scene with different corrections: what each costs and how wrong it is.
+
+use cpu_time::ThreadTime;
+use serde::Serialize;
+use taut::field::FieldView;
+use taut::{Budget, Cloth, ClothDef, Error, Grid, GridDef, noise};
+
+use crate::fabric::Fabric;
+use crate::metrics::{self, StretchPct};
+use crate::scene::Scene;
+
+/// The reference uses at most this many substeps of a frame.
+const MOST_SUBSTEPS: u32 = 1024;
+
+/// Radius of the inertia field as a share of the larger side, and its largest q: 15 % more inertia with two pins on 1 m.
+pub const INERTIA_RADIUS: f32 = 0.3;
+/// See [`INERTIA_RADIUS`].
+pub const INERTIA_MAX: f32 = 32.0;
+
+/// Stiffness that every budget cuts: "as stiff as the step allows" in N/m.
+const BEYOND: f32 = 1e8;
+
+/// What all settings of a comparison share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// The scene.
+    pub scene: Scene,
+    /// Particles along v.
+    pub rows: u32,
+    /// Particles along u.
+    pub columns: u32,
+    /// Sides in m, along u and along v.
+    pub size_m: [f32; 2],
+    /// Frames per second.
+    pub rate_hz: f32,
+    /// Substeps of a frame.
+    pub substeps: u32,
+    /// The stability budget.
+    pub budget: Budget,
+    /// Mass per area in kg/m^2.
+    pub density_kg_m2: f32,
+    /// Simulated time in s.
+    pub seconds: f32,
+    /// Seed of the random stiffness.
+    pub seed: u64,
+}
+
+/// A correction: where the stiffness comes from and whether the inertia field goes with it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// Physical stiffness with as many substeps as it needs.
+    Reference(Fabric),
+    /// Random stiffness, U(0, 1) of the budget at each particle: the choice that the paper calls traditional.
+    Random,
+    /// As stiff as the step allows, structural and shear springs alike.
+    Uniform,
+    /// Physical stiffness from the membrane constants (Lloyd's second class), cut by the budget.
+    Analytic(Fabric),
+    /// [`Setting::Uniform`] with the inertia field.
+    UniformInertia,
+    /// [`Setting::Analytic`] with the inertia field.
+    AnalyticInertia(Fabric),
+    /// A generated field `[4][rows][columns]` in N/m with the inertia field.
+    Generated(Vec<f32>),
+}
+
+impl Setting {
+    /// The name in reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Setting::Reference(_) => "reference",
+            Setting::Random => "random",
+            Setting::Uniform => "uniform",
+            Setting::Analytic(_) => "analytic",
+            Setting::UniformInertia => "uniform_inertia",
+            Setting::AnalyticInertia(_) => "analytic_inertia",
+            Setting::Generated(_) => "generated",
+        }
+    }
+
+    fn has_inertia(&self) -> bool {
+        matches!(self, Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::Generated(_))
+    }
+
+    /// The field at the particles in N/m.
+    fn field(&self, case: &Case) -> Vec<f32> {
+        let n = (case.rows * case.columns) as usize;
+        let constant = |k: [f32; 4]| k.iter().flat_map(|k| std::iter::repeat_n(*k, n)).collect();
+        match self {
+            Setting::Reference(f) | Setting::Analytic(f) | Setting::AnalyticInertia(f) => constant(f.stiffness),
+            Setting::Uniform | Setting::UniformInertia => constant([BEYOND, BEYOND, BEYOND, BEYOND]),
+            Setting::Random => {
+                // one matrix for all families, as the paper has it; U(0, 1) of the budget comes by the scale below
+                (0..4 * n).map(|i| noise::uniform(case.seed, (i % n) as u32)).collect()
+            }
+            Setting::Generated(field) => field.clone(),
+        }
+    }
+}
+
+/// The result of one setting.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// Its name.
+    pub name: &'static str,
+    /// Substeps it used.
+    pub substeps: u32,
+    /// Structural stretch at the end.
+    pub stretch_pct: StretchPct,
+    /// Largest structural stretch over all frames, the fall included.
+    pub peak_stretch_pct: f64,
+    /// Share of the stiffness that the budget cut.
+    pub cut_fraction: f64,
+    /// Inertia added by the inertia field, as a share of the free mass.
+    pub inertia_added: f64,
+    /// Thread CPU time per particle and substep.
+    pub ns_per_particle_step: f64,
+    /// Whether the whole run stayed finite.
+    pub finite: bool,
+    /// Root mean square speed at the end in m/s: 0 is at rest.
+    pub rms_speed_m_s: f64,
+    /// Hash of the state at the end, 16 hexadecimal digits.
+    pub state_hash: String,
+    /// Positions at the end in m, row by row; not part of the report.
+    #[serde(skip)]
+    pub positions: Vec<[f32; 3]>,
+}
+
+/// Runs a case with a setting. `progress` is called after every frame with the share that is done.
+pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Result<Outcome, Error> {
+    let grid = Grid::new(&GridDef {
+        rows: case.rows,
+        columns: case.columns,
+        width_m: case.size_m[0],
+        height_m: case.size_m[1],
+        ..GridDef::default()
+    })?;
+    let mut def = ClothDef {
+        rate_hz: case.rate_hz,
+        substeps: case.substeps,
+        density_kg_m2: case.density_kg_m2,
+        budget: case.budget,
+        inertia_radius_m: if setting.has_inertia() { INERTIA_RADIUS * case.size_m[0].max(case.size_m[1]) } else { 0.0 },
+        inertia_max: INERTIA_MAX,
+        max_pins: case.scene.max_pins(case.columns as usize),
+        ..ClothDef::default()
+    };
+    let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
+    let field = setting.field(case);
+    let shape = (case.rows as usize, case.columns as usize);
+    if let Setting::Reference(_) = setting {
+        // the substeps at which the budget cuts nothing, with a fifth more for the motion
+        let mut cloth = Cloth::create(&grid, &def, &mut block)?;
+        cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, &field)?);
+        case.scene.set_up(&mut cloth)?;
+        let needed = 1.2 / (cloth.budget()?.max_dt_s * case.rate_hz);
+        def.substeps = (needed.ceil() as u32).clamp(case.substeps.min(MOST_SUBSTEPS), MOST_SUBSTEPS);
+    }
+    let mut cloth = Cloth::create(&grid, &def, &mut block)?;
+    let scaled: Vec<f32>;
+    let field = if *setting == Setting::Random {
+        // scale so that the largest is what the budget would give a uniform cloth
+        cloth.set_stiffness_uniform([1.0, 1.0, 1.0, 1.0])?;
+        case.scene.set_up(&mut cloth)?;
+        let b = cloth.budget()?;
+        let k = (b.max_dt_s / b.dt_s).powi(2);
+        scaled = field.iter().map(|f| f * k).collect();
+        &scaled
+    } else {
+        &field
+    };
+    cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, field)?);
+    case.scene.set_up(&mut cloth)?;
+    let budget = cloth.budget()?;
+
+    let frames = (case.seconds * case.rate_hz).round().max(1.0) as u32;
+    let (mut finite, mut peak) = (true, 0.0f32);
+    let mut cpu = std::time::Duration::ZERO;
+    for frame in 0..frames {
+        let start = ThreadTime::now();
+        finite &= !cloth.step()?.contains(taut::StepFlags::NON_FINITE);
+        cpu += start.elapsed();
+        peak = peak.max(cloth.strain().largest);
+        progress((frame + 1) as f32 / frames as f32);
+    }
+    let particles = grid.particles();
+    let mass = f64::from(cloth.particle_mass_kg());
+    let steps = f64::from(frames) * f64::from(def.substeps) * particles as f64;
+    Ok(Outcome {
+        name: setting.name(),
+        substeps: def.substeps,
+        stretch_pct: metrics::stretch(&cloth),
+        peak_stretch_pct: 100.0 * f64::from(peak),
+        cut_fraction: f64::from(budget.cut_fraction),
+        inertia_added: f64::from(budget.inertia_added),
+        ns_per_particle_step: cpu.as_secs_f64() * 1e9 / steps,
+        finite,
+        rms_speed_m_s: (2.0 * cloth.kinetic_energy_j() / (mass * particles as f64)).sqrt(),
+        state_hash: format!("{:016x}", cloth.state_hash()),
+        positions: (0..particles).map(|i| cloth.position(i).map(|p| [p.x, p.y, p.z])).collect::<Result<_, _>>()?,
+    })
+}

@@ -1,0 +1,238 @@
+//! Fabrics: constants of real ones, and what words make of them.
+//!
+//! Seven were measured by Wang, O'Brien and Ramamoorthi ("Data-Driven Elastic Models for Cloth", 2011) and are used as
+//! ARCSim 0.2.1 uses them at small strain: the membrane energy per area is
+//! k_uu/2 Euu^2 + k_vv/2 Evv^2 + k_uv Euu Evv + k_shear Euv^2. A square grid with both diagonals has
+//! C11 = weft + shear + 4 bend, C22 = warp + shear + 4 bend and the shear term 2 shear Euv^2, so shear = k_shear / 2 and
+//! warp, weft follow. The others are estimates of ours by construction and weight, for words that nobody measured;
+//! they are marked as such.
+
+use taut::noise;
+
+/// Stiffness in N/m of the four families: warp, weft, shear, bend.
+pub type Stiffness = [f32; 4];
+
+/// What a fabric is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fabric {
+    /// Name of the kind it comes from.
+    pub kind: &'static str,
+    /// Physical stiffness in N/m: warp, weft, shear, bend.
+    pub stiffness: Stiffness,
+    /// Mass per area in kg/m^2.
+    pub density_kg_m2: f32,
+    /// Bending rigidity in N m.
+    pub hinge_rigidity_n_m: f32,
+    /// Whether the kind was measured (else it is an estimate).
+    pub measured: bool,
+}
+
+/// A kind of fabric and the words that speak of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its name.
+    pub name: &'static str,
+    /// Where its constants come from.
+    pub source: &'static str,
+    /// Words that name it, the most telling first.
+    pub names: &'static [&'static str],
+    /// Fibres, constructions and uses that go with it.
+    pub words: &'static [&'static str],
+    /// k_uu, k_vv, k_shear in N/m at small strain.
+    pub membrane: [f32; 3],
+    /// Mass per area in kg/m^2.
+    pub density_kg_m2: f32,
+    /// Mean bending rigidity in N m.
+    pub hinge_rigidity_n_m: f32,
+}
+
+const WANG: &str = "Wang, O'Brien, Ramamoorthi 2011";
+const ESTIMATE: &str = "estimate";
+
+macro_rules! kind {
+    ($name:literal, $source:expr, $names:expr, $words:expr, $membrane:expr, $density:literal, $rigidity:literal) => {
+        Kind {
+            name: $name,
+            source: $source,
+            names: &$names,
+            words: &$words,
+            membrane: $membrane,
+            density_kg_m2: $density,
+            hinge_rigidity_n_m: $rigidity,
+        }
+    };
+}
+
+/// All kinds; the first seven are measured. u is the first number of the membrane, v the second.
+#[rustfmt::skip]
+pub const KINDS: [Kind; 17] = [
+    kind!("denim", WANG, ["denim", "jeans"], ["cotton", "twill", "woven", "indigo", "trousers", "workwear"], [414.36, 2033.5, 108.84], 0.324, 1.95e-5),
+    kind!("jersey", WANG, ["jersey", "interlock", "t-shirt"], ["cotton", "polyester", "knit", "shirt", "top"], [41.64, 109.84, 66.89], 0.187, 5.2e-6),
+    kind!("rib knit", WANG, ["rib", "ribbed", "underwear"], ["cotton", "spandex", "knit", "undershirt", "cuff"], [89.8, 157.6, 151.06], 0.276, 9.0e-6),
+    kind!("sweatshirt knit", WANG, ["sweatshirt", "sweater", "sweat"], ["polyester", "spandex", "knit", "sparkle", "pullover"], [30.89, 46.24, 34.72], 0.224, 1.2e-5),
+    kind!("blanket", WANG, ["blanket", "ribbon", "throw"], ["polyester", "plush", "woven", "bedding"], [301.55, 497.68, 60.49], 0.228, 2.2e-5),
+    kind!("tablecloth", WANG, ["tablecloth", "taffeta"], ["polyester", "woven", "plain", "table", "napkin"], [4019.82, 4075.38, 39.07], 0.128, 1.03e-5),
+    kind!("swimwear knit", WANG, ["swimsuit", "swimwear", "swim", "lycra"], ["nylon", "spandex", "elastane", "knit", "sport"], [96.21, 216.67, 111.85], 0.204, 1.42e-5),
+    kind!("silk", ESTIMATE, ["silk", "habotai"], ["woven", "plain", "scarf", "blouse", "lining"], [350.0, 950.0, 24.0], 0.065, 2.5e-6),
+    kind!("satin", ESTIMATE, ["satin", "sateen"], ["polyester", "woven", "gown", "lining", "dress"], [500.0, 1100.0, 26.0], 0.125, 6.0e-6),
+    kind!("chiffon", ESTIMATE, ["chiffon", "georgette", "voile", "gauze"], ["polyester", "woven", "veil", "scarf", "curtain"], [180.0, 230.0, 8.0], 0.045, 1.5e-6),
+    kind!("cotton", ESTIMATE, ["poplin", "shirting", "percale", "muslin", "cotton"], ["woven", "plain", "shirt", "sheet", "dress"], [1500.0, 2200.0, 60.0], 0.125, 8.0e-6),
+    kind!("linen", ESTIMATE, ["linen", "flax"], ["woven", "plain", "summer", "suit", "napkin"], [2000.0, 2600.0, 60.0], 0.175, 1.6e-5),
+    kind!("canvas", ESTIMATE, ["canvas", "duck", "sailcloth"], ["cotton", "woven", "plain", "tent", "bag", "sail"], [2800.0, 3600.0, 200.0], 0.400, 6.0e-5),
+    kind!("wool", ESTIMATE, ["wool", "tweed", "flannel", "worsted"], ["woven", "twill", "coat", "suit", "winter"], [550.0, 800.0, 60.0], 0.260, 2.0e-5),
+    kind!("felt", ESTIMATE, ["felt"], ["wool", "nonwoven", "hat", "craft"], [700.0, 700.0, 260.0], 0.300, 8.0e-5),
+    kind!("velvet", ESTIMATE, ["velvet", "velour", "corduroy"], ["pile", "woven", "curtain", "upholstery"], [400.0, 650.0, 50.0], 0.330, 2.4e-5),
+    kind!("fleece", ESTIMATE, ["fleece"], ["polyester", "knit", "jacket", "pile"], [110.0, 170.0, 80.0], 0.240, 1.6e-5),
+];
+
+/// Words that change a fabric: (word, factor on the density, factor on the stiffness, factor on the rigidity).
+#[rustfmt::skip]
+pub const MODIFIERS: [(&str, f32, f32, f32); 22] = [
+    ("heavy", 1.30, 1.20, 1.6), ("heavyweight", 1.35, 1.25, 1.7), ("thick", 1.25, 1.20, 1.8), ("dense", 1.20, 1.20, 1.3),
+    ("light", 0.75, 0.85, 0.6), ("lightweight", 0.75, 0.85, 0.6), ("thin", 0.75, 0.80, 0.5), ("sheer", 0.65, 0.75, 0.5),
+    ("fine", 0.85, 0.95, 0.7), ("airy", 0.75, 0.80, 0.6), ("stiff", 1.05, 1.35, 1.8), ("crisp", 1.00, 1.25, 1.5),
+    ("starched", 1.02, 1.35, 2.0), ("sturdy", 1.15, 1.25, 1.4), ("rigid", 1.05, 1.40, 2.0), ("soft", 0.95, 0.80, 0.6),
+    ("supple", 0.95, 0.80, 0.6), ("limp", 0.90, 0.70, 0.5), ("loose", 0.90, 0.75, 0.7), ("stretchy", 1.00, 0.65, 0.9),
+    ("elastic", 1.00, 0.65, 0.9), ("smooth", 0.97, 1.00, 0.9),
+];
+
+/// Words that change nothing but how it looks.
+pub const COLOURS: [&str; 16] = [
+    "blue", "black", "white", "red", "green", "grey", "navy", "brown", "pink", "ivory", "yellow", "dark", "pale", "striped",
+    "plain", "printed",
+];
+
+/// Bend stiffness in N/m: Provot's bend springs resist stretch too, so they are kept small.
+const BEND: f32 = 1.0;
+
+impl Kind {
+    /// The fabric as it is without further words.
+    pub fn fabric(&self) -> Fabric {
+        let [uu, vv, shear] = self.membrane;
+        let shear = 0.5 * shear;
+        let rest = |c: f32| (c - shear - 4.0 * BEND).max(0.25 * c);
+        let (warp, weft) = (rest(vv), rest(uu));
+        Fabric {
+            kind: self.name,
+            stiffness: [warp, weft, shear, BEND.min(taut::BEND_SHARE * 0.5 * (warp + weft))],
+            density_kg_m2: self.density_kg_m2,
+            hinge_rigidity_n_m: self.hinge_rigidity_n_m,
+            measured: self.source == WANG,
+        }
+    }
+}
+
+impl Fabric {
+    /// The fabric with the effect of the modifying words of a description.
+    pub fn modified(mut self, words: &[String]) -> Fabric {
+        for (word, density, stiffness, rigidity) in MODIFIERS {
+            if words.iter().any(|w| w == word) {
+                self.density_kg_m2 *= density;
+                self.hinge_rigidity_n_m *= rigidity;
+                for k in &mut self.stiffness {
+                    *k *= stiffness;
+                }
+            }
+        }
+        self
+    }
+
+    /// The fabric that a description names by the words of the tables above, if it names one.
+    pub fn named(description: &str) -> Option<Fabric> {
+        let words = words_of(description);
+        let has = |w: &str| words.iter().any(|x| x == w || x.strip_suffix('s') == Some(w));
+        // A name counts more the earlier it stands in its kind's list, the other words break ties.
+        let score = |k: &Kind| {
+            let name = k.names.iter().position(|w| has(w)).map_or(0, |i| 100 - 10 * i);
+            name + k.words.iter().filter(|w| has(w)).count()
+        };
+        let best = KINDS.iter().rev().max_by_key(|k| score(k))?;
+        (score(best) > 0).then(|| best.fabric().modified(&words))
+    }
+
+    /// Largest membrane stiffness in N/m.
+    pub fn stiffest(&self) -> f32 {
+        self.stiffness[0].max(self.stiffness[1])
+    }
+
+    /// Whether it stretches as a knit does: less than 300 N/m on average (facts of Wang et al.: wovens are above).
+    pub fn is_soft(&self) -> bool {
+        0.5 * (self.stiffness[0] + self.stiffness[1]) < 300.0
+    }
+}
+
+/// Lower-case words of a text.
+pub fn words_of(text: &str) -> Vec<String> {
+    text.to_lowercase()
+        .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
+        .filter(|w| !w.is_empty())
+        .map(str::to_string)
+        .collect()
+}
+
+/// A fabric near a kind with a description that fits it, drawn by (seed, index): the words that modify it act, and what is
+/// left (up to 10 % of the stiffness, 5 % of the density) is the difference between two bolts of the same cloth.
+pub fn sample(seed: u64, index: u32) -> (Fabric, String) {
+    let draw = |i: u32| noise::uniform(seed, index.wrapping_mul(16).wrapping_add(i));
+    let pick = |i: u32, n: usize| ((draw(i) * n as f32) as usize).min(n - 1);
+    let kind = &KINDS[pick(0, KINDS.len())];
+    let name = kind.names[pick(1, kind.names.len())];
+    let mut words: Vec<String> = Vec::new();
+    if draw(2) < 0.6 {
+        words.push(MODIFIERS[pick(3, MODIFIERS.len())].0.to_string());
+    }
+    if draw(4) < 0.5 {
+        words.push(COLOURS[pick(5, COLOURS.len())].to_string());
+    }
+    if draw(6) < 0.35 {
+        words.push(kind.words[pick(7, kind.words.len())].to_string());
+    }
+    words.push(name.to_string());
+    if draw(8) < 0.25 {
+        words.push(kind.words[pick(9, kind.words.len())].to_string());
+    }
+    let mut fabric = kind.fabric().modified(&words);
+    let common = (0.20 * (draw(10) - 0.5)).exp();
+    for k in &mut fabric.stiffness {
+        *k *= common;
+    }
+    fabric.density_kg_m2 *= (0.10 * (draw(11) - 0.5)).exp();
+    (fabric, words.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_name_fabrics() {
+        let kind = |d: &str| Fabric::named(d).map(|f| f.kind);
+        assert_eq!(kind("heavy blue denim"), Some("denim"));
+        assert_eq!(kind("a thin soft grey T-shirt for summer"), Some("jersey"));
+        assert_eq!(kind("light silk"), Some("silk"));
+        assert_eq!(kind("cotton jersey knit"), Some("jersey"));
+        assert_eq!(kind("crisp white cotton shirt"), Some("cotton"));
+        assert_eq!(kind("quantum foam"), None);
+        let (heavy, plain) = (Fabric::named("heavy denim").unwrap(), Fabric::named("denim").unwrap());
+        assert!(heavy.density_kg_m2 > plain.density_kg_m2 && heavy.stiffness[0] > plain.stiffness[0]);
+    }
+
+    #[test]
+    fn stiffness_gives_back_the_measured_membrane() {
+        let f = KINDS[0].fabric();
+        let [warp, weft, shear, bend] = f.stiffness;
+        assert!((weft + shear + 4.0 * bend - 414.36).abs() < 0.1, "C11");
+        assert!((warp + shear + 4.0 * bend - 2033.5).abs() < 0.1, "C22");
+        assert!((2.0 * shear - 108.84).abs() < 0.1);
+    }
+
+    #[test]
+    fn samples_are_named_as_what_they_are() {
+        for i in 0..500 {
+            let (fabric, words) = sample(3, i);
+            assert_eq!(sample(3, i), (fabric.clone(), words.clone()));
+            assert!(fabric.stiffness.iter().all(|k| k.is_finite() && *k > 0.0));
+            assert!((0.02..0.8).contains(&fabric.density_kg_m2), "{words}: {}", fabric.density_kg_m2);
+        }
+    }
+}
