@@ -3,4 +3,5 @@
 pub mod compare;
 pub mod fabric;
 pub mod metrics;
+pub mod picture;
 pub mod scene;

@@ -1,0 +1,28 @@
+//! Pictures: a small deterministic software renderer for cloth, and the sheets that compare settings side by side.
+//!
+//! [`Sheet`] is the way in: panels of one shared scale, shaded fabric, over-stretched edges in colour, a legend.
+
+mod camera;
+mod canvas;
+mod card;
+mod cloth;
+mod color;
+mod contour;
+mod error;
+mod framing;
+mod grid;
+mod layout;
+mod legend;
+mod raster;
+mod save;
+mod shadow;
+mod sheet;
+mod text;
+mod vector;
+
+pub use cloth::Style;
+pub use color::{Ramp, STRAIN_CEILING, STRAIN_FLOOR, Srgb};
+pub use error::PictureError;
+pub use grid::Grid;
+pub use save::{encode_png, save_png};
+pub use sheet::{MAX_PANELS, Panel, Sheet};
