@@ -1,0 +1,106 @@
+use crate::{ClothDef, Error, Features, Grid, math::round16};
+
+/// Numbers of a pin: index, from (3), to (3).
+pub(crate) const PIN_NUMBERS: usize = 7;
+
+/// Where things lie in the block. Every per-particle array is a plane of padded rows: `stride` numbers a row, two spare
+/// rows above and below, at least 16 spare numbers between rows, so that a vector may read past any border. Spare
+/// places hold zeros and have no mass; a spring to a spare place has stiffness 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layout {
+    pub rows: usize,
+    pub columns: usize,
+    /// Columns rounded up to 16: the numbers of a row that a step touches.
+    pub width: usize,
+    pub stride: usize,
+    pub plane: usize,
+    pub shear: bool,
+    pub bend: bool,
+    pub pull: bool,
+    pub max_pins: usize,
+}
+
+impl Layout {
+    pub fn new(grid: &Grid, def: &ClothDef) -> Result<Layout, Error> {
+        let (rows, columns) = (grid.rows(), grid.columns());
+        if def.max_pins as usize > rows * columns {
+            return Err(Error::OutOfRange);
+        }
+        let width = round16(columns);
+        let stride = width + 16;
+        Ok(Layout {
+            rows,
+            columns,
+            width,
+            stride,
+            plane: stride * (rows + 4) + 32,
+            shear: grid.has_shear(),
+            bend: grid.has_bend(),
+            pull: def.features.contains(Features::PULL),
+            max_pins: def.max_pins as usize,
+        })
+    }
+
+    /// Channels of the target field and planes of springs: 2 structural of each, then shear 1 and 2, bend 1 and 2.
+    pub fn channels(&self) -> usize {
+        2 + usize::from(self.shear) + usize::from(self.bend)
+    }
+
+    pub fn spring_planes(&self) -> usize {
+        2 + 2 * usize::from(self.shear) + 2 * usize::from(self.bend)
+    }
+
+    /// f32 numbers of the whole block.
+    pub fn numbers(&self) -> usize {
+        // positions 3, velocities 3, the last good state 6, 1/M 1
+        let planes = 13 + self.channels() + self.spring_planes() + if self.pull { 3 } else { 0 };
+        planes * self.plane + round16(PIN_NUMBERS * self.max_pins)
+    }
+
+    /// Place of column 0 of a row in a plane.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> usize {
+        16 + (row + 2) * self.stride
+    }
+
+    /// Place of a particle in a plane.
+    #[inline(always)]
+    pub fn at(&self, row: usize, column: usize) -> usize {
+        self.row(row) + column
+    }
+
+    /// Place of the particle of an index. Error: [`Error::NoSuchParticle`].
+    pub fn place(&self, particle: usize) -> Result<usize, Error> {
+        if particle >= self.rows * self.columns {
+            return Err(Error::NoSuchParticle);
+        }
+        Ok(self.at(particle / self.columns, particle % self.columns))
+    }
+}
+
+/// Takes the first `n` numbers off a block.
+pub(crate) fn take<'a>(block: &mut &'a mut [f32], n: usize) -> Result<&'a mut [f32], Error> {
+    let (head, tail) = core::mem::take(block).split_at_mut_checked(n).ok_or(Error::BlockTooSmall)?;
+    *block = tail;
+    Ok(head)
+}
+
+/// The numbers of a row of a plane, empty where the plane has no such row (a family that is off).
+#[inline(always)]
+pub(crate) fn span(plane: &[f32], at: usize, len: usize) -> &[f32] {
+    plane.get(at..at.wrapping_add(len)).unwrap_or(&[])
+}
+
+/// The number at a place, 0 outside.
+#[inline(always)]
+pub(crate) fn read(plane: &[f32], at: usize) -> f32 {
+    plane.get(at).copied().unwrap_or(0.0)
+}
+
+/// Writes the number at a place; nothing outside.
+#[inline(always)]
+pub(crate) fn write(plane: &mut [f32], at: usize, value: f32) {
+    if let Some(p) = plane.get_mut(at) {
+        *p = value;
+    }
+}

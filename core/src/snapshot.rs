@@ -1,0 +1,215 @@
+//! Snapshots: the state of a cloth as bytes, little-endian, the same on every target.
+//!
+//! | bytes | content |
+//! |---|---|
+//! | 0..8 | `TAUTSNAP` |
+//! | 8..12, 12..16 | version 1, number of bytes |
+//! | 16..24 | digest of grid and definition |
+//! | 24..32 | step index |
+//! | 32..36, 36..40 | number of pins, 1 if forces are pending |
+//! | then | x, y, z, vx, vy, vz: f32 `[rows][columns]` each |
+//! | then | the pending forces, three times f32 `[rows][columns]`, if any |
+//! | then | each pin: particle as f32, from x y z, to x y z |
+//! | last 8 | hash of all bytes before |
+//!
+//! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins) and the origin.
+
+use crate::layout::{PIN_NUMBERS, read};
+use crate::{Cloth, Error, Hash64};
+
+const MAGIC: &[u8; 8] = b"TAUTSNAP";
+const VERSION: u32 = 1;
+const HEADER: usize = 40;
+
+impl Cloth<'_> {
+    /// Bytes of a snapshot of the cloth as it is now.
+    pub fn snapshot_size(&self) -> usize {
+        self.size_of_snapshot(self.pins.count, self.has_pull)
+    }
+
+    /// Bytes that every snapshot of this cloth fits in.
+    pub fn snapshot_size_max(&self) -> usize {
+        self.size_of_snapshot(self.pins.capacity, self.layout.pull)
+    }
+
+    fn size_of_snapshot(&self, pins: usize, pull: bool) -> usize {
+        let planes = if pull { 9 } else { 6 };
+        HEADER + 4 * (planes * self.grid.particles() + PIN_NUMBERS * pins) + 8
+    }
+
+    fn digest(&self) -> u64 {
+        let mut h = Hash64::new();
+        let g = self.grid.digest();
+        h.words(&[g as u32, (g >> 32) as u32]);
+        self.def.digest(&mut h);
+        h.finish()
+    }
+
+    /// 64-bit hash of the state: step index, positions, velocities, pending forces, pins.
+    ///
+    /// Like a snapshot it first settles what a change of pins does to inertia and velocities, which is why it is `mut`.
+    pub fn state_hash(&mut self) -> u64 {
+        self.refresh(true);
+        let mut h = Hash64::new();
+        h.words(&[self.step_index as u32, (self.step_index >> 32) as u32, self.pins.count as u32]);
+        self.each_row(|row| h.floats(row));
+        h.floats(self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
+        h.finish()
+    }
+
+    /// The rows of the planes that are state, in the order of the snapshot.
+    fn each_row(&self, mut visit: impl FnMut(&[f32])) {
+        let l = self.layout;
+        let state = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
+        let pull = if self.has_pull { self.pull.as_slice() } else { &[] };
+        for plane in state.into_iter().chain(pull.iter().map(|p| &**p)) {
+            for row in 0..l.rows {
+                visit(crate::layout::span(plane, l.row(row), l.columns));
+            }
+        }
+    }
+
+    /// Writes the state. Returns the number of bytes written, [`Cloth::snapshot_size`].
+    ///
+    /// Error: [`Error::BlockTooSmall`]; then nothing is written.
+    pub fn snapshot(&mut self, out: &mut [u8]) -> Result<usize, Error> {
+        self.refresh(true);
+        let size = self.snapshot_size();
+        let out = out.get_mut(..size).ok_or(Error::BlockTooSmall)?;
+        let (body, tail) = out.split_at_mut(size - 8);
+        let mut rest = &mut *body;
+        put(&mut rest, MAGIC);
+        put(&mut rest, &VERSION.to_le_bytes());
+        put(&mut rest, &(size as u32).to_le_bytes());
+        put(&mut rest, &self.digest().to_le_bytes());
+        put(&mut rest, &self.step_index.to_le_bytes());
+        put(&mut rest, &(self.pins.count as u32).to_le_bytes());
+        put(&mut rest, &u32::from(self.has_pull).to_le_bytes());
+        self.each_row(|row| put_floats(&mut rest, row));
+        put_floats(&mut rest, self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
+        let mut h = Hash64::new();
+        h.bytes(body);
+        tail.copy_from_slice(&h.finish().to_le_bytes());
+        Ok(size)
+    }
+
+    /// Reads a state back. The whole snapshot is checked before anything is changed.
+    ///
+    /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::Foreign`] (another
+    /// grid or definition), [`Error::Checksum`], [`Error::Shape`].
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let (header, _) = bytes.split_at_checked(HEADER).ok_or(Error::Truncated)?;
+        if !header.starts_with(MAGIC) {
+            return Err(Error::WrongKind);
+        }
+        if u32_at(header, 8) != VERSION {
+            return Err(Error::UnsupportedVersion);
+        }
+        let size = u32_at(header, 12) as usize;
+        let bytes = bytes.get(..size).ok_or(Error::Truncated)?;
+        let (pins, pull) = (u32_at(header, 32) as usize, u32_at(header, 36));
+        if u64_at(header, 16) != self.digest() {
+            return Err(Error::Foreign);
+        }
+        if pins > self.pins.capacity
+            || pull > u32::from(self.layout.pull)
+            || size != self.size_of_snapshot(pins, pull == 1)
+        {
+            return Err(Error::Shape);
+        }
+        let (body, tail) = bytes.split_at_checked(size - 8).ok_or(Error::Truncated)?;
+        let mut h = Hash64::new();
+        h.bytes(body);
+        if u64_at(tail, 0) != h.finish() {
+            return Err(Error::Checksum);
+        }
+        let (numbers, _) = body.get(HEADER..).unwrap_or(&[]).as_chunks::<4>();
+        let number = |i: usize| numbers.get(i).map_or(0.0, |b| f32::from_le_bytes(*b));
+        self.check_numbers(&number, numbers.len(), pins)?;
+
+        let (l, n) = (self.layout, self.grid.particles());
+        let planes = [
+            &mut *self.x.x,
+            &mut *self.x.y,
+            &mut *self.x.z,
+            &mut *self.v.x,
+            &mut *self.v.y,
+            &mut *self.v.z,
+        ];
+        let pull_planes = if pull == 1 { self.pull.as_mut_slice() } else { &mut [] };
+        let mut next = 0;
+        for plane in planes.into_iter().chain(pull_planes.iter_mut().map(|p| &mut **p)) {
+            for row in 0..l.rows {
+                let at = l.row(row);
+                let row = plane.get_mut(at..at + l.columns).unwrap_or(&mut []);
+                for (to, from) in row.iter_mut().zip(numbers.get(next..).unwrap_or(&[])) {
+                    *to = f32::from_le_bytes(*from);
+                }
+                next += l.columns;
+            }
+        }
+        let first = numbers.len() - PIN_NUMBERS * pins;
+        let same = pins == self.pins.count
+            && (0..pins).all(|i| read(self.pins.numbers, i * PIN_NUMBERS) == number(first + i * PIN_NUMBERS));
+        for (i, to) in self.pins.numbers.iter_mut().enumerate().take(PIN_NUMBERS * pins) {
+            *to = number(first + i);
+        }
+        self.pins.count = pins;
+        self.has_pull = pull == 1;
+        self.step_index = u64_at(header, 24);
+        debug_assert_eq!(next, (if pull == 1 { 9 } else { 6 }) * n);
+        if !same {
+            // velocities were stored for the inertia of these pins: the momentum must not be kept a second time
+            self.stale = true;
+            self.refresh(false);
+        }
+        Ok(())
+    }
+
+    /// A snapshot holds finite numbers and ascending pins of existing particles.
+    fn check_numbers(&self, number: &impl Fn(usize) -> f32, count: usize, pins: usize) -> Result<(), Error> {
+        let mut sum = 0.0f32;
+        for i in 0..count {
+            sum += number(i) * 0.0;
+        }
+        if sum != 0.0 {
+            return Err(Error::NotFinite);
+        }
+        let first = count - PIN_NUMBERS * pins;
+        let mut least = 0.0;
+        for i in 0..pins {
+            let particle = number(first + i * PIN_NUMBERS);
+            if particle < least || particle >= self.grid.particles() as f32 || particle != libm::floorf(particle) {
+                return Err(Error::NoSuchParticle);
+            }
+            least = particle + 1.0;
+        }
+        Ok(())
+    }
+}
+
+fn put(rest: &mut &mut [u8], bytes: &[u8]) {
+    if let Some((head, tail)) = core::mem::take(rest).split_at_mut_checked(bytes.len()) {
+        head.copy_from_slice(bytes);
+        *rest = tail;
+    }
+}
+
+fn put_floats(rest: &mut &mut [u8], values: &[f32]) {
+    if let Some((head, tail)) = core::mem::take(rest).split_at_mut_checked(4 * values.len()) {
+        for (to, from) in head.as_chunks_mut::<4>().0.iter_mut().zip(values) {
+            *to = from.to_le_bytes();
+        }
+        *rest = tail;
+    }
+}
+
+/// A little-endian u32 at a place, 0 outside.
+pub(crate) fn u32_at(bytes: &[u8], at: usize) -> u32 {
+    bytes.get(at..).and_then(|b| b.first_chunk::<4>()).map_or(0, |b| u32::from_le_bytes(*b))
+}
+
+/// A little-endian u64 at a place, 0 outside.
+pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
+    bytes.get(at..).and_then(|b| b.first_chunk::<8>()).map_or(0, |b| u64::from_le_bytes(*b))
+}
