@@ -3,11 +3,13 @@ use std::io::Read;
 use std::path::Path;
 
 use ndarray::{Array3, ArrayView3};
+use taut::baked::{self, Fabric};
+use taut::field::CHANNELS;
 
 use crate::metadata::{self, Info};
 use crate::plan::{Feed, Plan};
 use crate::tokens::Tokens;
-use crate::{CHANNELS, Error, Vocabulary};
+use crate::{Error, Vocabulary};
 use crate::{field, graph, scene, wire};
 
 /// Largest generator file in bytes. The largest that training writes has 16 MB.
@@ -35,7 +37,15 @@ pub struct Request<'a> {
 impl<'a> Request<'a> {
     /// The fabric of a description on 32 x 32 particles, 1 m x 1 m, nothing pinned, seed 0.
     pub fn new(description: &'a str) -> Self {
-        Request { description, seed: 0, rows: 32, columns: 32, width_m: 1.0, height_m: 1.0, pins: &[] }
+        Request {
+            description,
+            seed: 0,
+            rows: 32,
+            columns: 32,
+            width_m: 1.0,
+            height_m: 1.0,
+            pins: &[],
+        }
     }
 }
 
@@ -58,6 +68,44 @@ pub struct Correction {
     pub dropped_words: Vec<String>,
     /// The words that counted, as they stand in the vocabulary.
     pub tokens: Vec<String>,
+    /// The description that it was asked for.
+    pub description: String,
+    /// The seed that it was asked for.
+    pub seed: u64,
+}
+
+impl Correction {
+    /// What the words tell beside the field, as the cloth takes it.
+    pub fn fabric(&self) -> Fabric {
+        Fabric {
+            density_kg_m2: self.density_kg_m2,
+            hinge_rigidity_n_m: self.hinge_rigidity_n_m,
+            stretch_limits: self.stretch_limits,
+        }
+    }
+
+    /// The bytes of a baked field file ([`taut::baked`]): small, exact, and read by the cloth
+    /// without the generator. Errors: [`Error::Baked`] if the field or a number was changed to
+    /// something that no cloth takes.
+    pub fn to_baked(&self) -> Result<Vec<u8>, Error> {
+        let (_, rows, columns) = self.field.dim();
+        let mut bytes = vec![0; baked::size(rows, columns).map_err(Error::Baked)?];
+        // a field that was put together anew may lie in another order
+        let numbers = self.field.as_standard_layout();
+        let numbers = numbers.as_slice().unwrap_or_default();
+        let fabric = self.fabric();
+        baked::write(
+            rows,
+            columns,
+            numbers,
+            &fabric,
+            self.seed,
+            &self.description,
+            &mut bytes,
+        )
+        .map_err(Error::Baked)?;
+        Ok(bytes)
+    }
 }
 
 /// A generator file, checked and ready to run. It can be shared by threads.
@@ -69,7 +117,9 @@ pub struct Generator {
 
 impl fmt::Debug for Generator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Generator").field("info", &self.info).finish_non_exhaustive()
+        f.debug_struct("Generator")
+            .field("info", &self.info)
+            .finish_non_exhaustive()
     }
 }
 
@@ -78,7 +128,9 @@ impl Generator {
     /// that is about a file; see [`Error`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Generator, Error> {
         if bytes.len() > MAX_FILE_BYTES {
-            return Err(Error::TooLarge { limit: MAX_FILE_BYTES });
+            return Err(Error::TooLarge {
+                limit: MAX_FILE_BYTES,
+            });
         }
         let entries = wire::metadata(bytes)?;
         let (mut info, vocabulary) = metadata::parse(&entries)?;
@@ -86,17 +138,26 @@ impl Generator {
         info.parameters = checked.parameters;
         info.file_bytes = bytes.len();
         let plan = Plan::build(&checked.model, &info)?;
-        Ok(Generator { info, vocabulary, plan })
+        Ok(Generator {
+            info,
+            vocabulary,
+            plan,
+        })
     }
 
     /// Reads a generator file. Errors: [`Error::Io`], and those of [`Generator::from_bytes`].
     pub fn load(path: impl AsRef<Path>) -> Result<Generator, Error> {
         let path = path.as_ref();
-        let io = |e: std::io::Error| Error::Io { path: path.display().to_string(), reason: e.to_string() };
+        let io = |e: std::io::Error| Error::Io {
+            path: path.display().to_string(),
+            reason: e.to_string(),
+        };
         let file = std::fs::File::open(path).map_err(io)?;
         let mut bytes = Vec::new();
         // one byte more than allowed tells a file that is too large, even one that never ends
-        file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
+        file.take(MAX_FILE_BYTES as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(io)?;
         Generator::from_bytes(&bytes)
     }
 
@@ -128,7 +189,9 @@ impl Generator {
             indices[i] = row as i64;
             weights[i] = 1.0 / known as f32;
         }
-        let noise: Vec<f32> = (0..info.noise).map(|i| taut::noise::gaussian(request.seed, i as u32)).collect();
+        let noise: Vec<f32> = (0..info.noise)
+            .map(|i| taut::noise::gaussian(request.seed, i as u32))
+            .collect();
         let pin_distance: Vec<f32> = pin_distance.iter().copied().collect();
         let [field, fabric] = self.plan.run(&Feed {
             tokens: &indices,
@@ -154,6 +217,8 @@ impl Generator {
             unknown_words: tokens.unknown,
             dropped_words: tokens.dropped,
             tokens: tokens.words,
+            description: request.description.into(),
+            seed: request.seed,
         })
     }
 }

@@ -26,6 +26,7 @@
 //! another (inference kernels differ): where lockstep matters, ship the baked file.
 #![forbid(unsafe_code)]
 
+mod call;
 mod error;
 mod field;
 mod generator;
@@ -40,8 +41,8 @@ mod vocabulary;
 mod wire;
 
 pub use error::Error;
-pub use field::{BEND_SHARE, resample};
+pub use field::resample;
 pub use generator::{Correction, Generator, MAX_FILE_BYTES, Request};
-pub use metadata::{CHANNELS, FABRIC, Info, Range};
+pub use metadata::{FABRIC, Info, Range};
 pub use scene::pin_distance;
 pub use vocabulary::{MAX_WORDS, Vocabulary};

@@ -32,7 +32,11 @@ impl Plan {
             model.into_optimized()?.into_runnable()
         })?;
         let inputs = input_shapes(info).map(|(_, dims)| dims);
-        Ok(Plan { runnable, inputs, outputs: output_shapes(info) })
+        Ok(Plan {
+            runnable,
+            inputs,
+            outputs: output_shapes(info),
+        })
     }
 
     /// Runs the network. The result is `field` and `fabric` as they stand in the file's contract,
@@ -50,10 +54,17 @@ impl Plan {
                 let view = t.to_plain_array_view::<f32>()?;
                 Ok((view.shape().to_vec(), view.iter().copied().collect()))
             };
-            self.runnable.run(inputs)?.iter().map(read).collect::<TractResult<Vec<_>>>()
+            self.runnable
+                .run(inputs)?
+                .iter()
+                .map(read)
+                .collect::<TractResult<Vec<_>>>()
         })?;
         let Ok([field, fabric]) = <[_; 2]>::try_from(outputs) else {
-            return Err(Error::Inference { stage: "run", reason: "another number of outputs".into() });
+            return Err(Error::Inference {
+                stage: "run",
+                reason: "another number of outputs".into(),
+            });
         };
         let field = checked(field, "field", &self.outputs[0])?;
         let fabric = checked(fabric, "fabric", &self.outputs[1])?;
@@ -63,7 +74,11 @@ impl Plan {
 
 /// Checks the shape and the numbers of an output. Some kernels round tanh to a hair above 1; that is
 /// put back to 1, anything else outside is an error.
-fn checked((dims, mut numbers): (Vec<usize>, Vec<f32>), output: &'static str, expected: &[usize]) -> Result<Vec<f32>, Error> {
+fn checked(
+    (dims, mut numbers): (Vec<usize>, Vec<f32>),
+    output: &'static str,
+    expected: &[usize],
+) -> Result<Vec<f32>, Error> {
     if dims != expected {
         return Err(Error::TensorShape {
             tensor: output.into(),
@@ -79,4 +94,28 @@ fn checked((dims, mut numbers): (Vec<usize>, Vec<f32>), output: &'static str, ex
         *x = x.clamp(-1.0, 1.0);
     }
     Ok(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_tanh_can_write_passes() {
+        let check = |x: f32| checked((vec![1, 2], vec![0.5, x]), "field", &[1, 2]);
+        assert_eq!(check(-1.0), Ok(vec![0.5, -1.0]));
+        assert_eq!(check(1.000_001), Ok(vec![0.5, 1.0]));
+        for x in [1.1, -3.0, f32::INFINITY] {
+            assert_eq!(
+                check(x),
+                Err(Error::Output {
+                    output: "field",
+                    value: x
+                })
+            );
+        }
+        assert!(matches!(check(f32::NAN), Err(Error::Output { .. })));
+        let other = checked((vec![2], vec![0.0; 2]), "field", &[1, 2]);
+        assert!(matches!(other, Err(Error::TensorShape { .. })));
+    }
 }

@@ -5,72 +5,8 @@
 //! of opset 17 and only for the operations and attributes that a generator needs. What passes is
 //! small, and every tensor is what its operation expects.
 
-use tract_onnx::pb::{AttributeProto, NodeProto};
-
 use crate::Error;
-
-/// Most numbers of one tensor: twice the first layer of a generator of width 64.
-pub(crate) const MAX_ELEMENTS: usize = 1 << 25;
-/// Most multiply-adds of one node, some seconds of one core.
-const MAX_WORK: usize = 1 << 32;
-const MAX_RANK: usize = 6;
-
-/// Type of the numbers of a tensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    F32,
-    F16,
-    I64,
-}
-
-impl Kind {
-    /// Its number in onnx.proto3.
-    pub fn code(self) -> i32 {
-        match self {
-            Kind::F32 => 1,
-            Kind::F16 => 10,
-            Kind::I64 => 7,
-        }
-    }
-
-    pub fn of_code(code: i32) -> Option<Kind> {
-        [Kind::F32, Kind::F16, Kind::I64].into_iter().find(|k| k.code() == code)
-    }
-
-    pub fn bytes(self) -> usize {
-        match self {
-            Kind::F32 => 4,
-            Kind::F16 => 2,
-            Kind::I64 => 8,
-        }
-    }
-}
-
-/// What is known of a tensor.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Value {
-    pub kind: Kind,
-    pub dims: Vec<usize>,
-    /// The graph inputs that it depends on, a bit each.
-    pub sources: u8,
-    /// Whether it stands in the file.
-    pub stored: bool,
-    /// The numbers of a short stored list: axes, sizes, scales.
-    pub list: Vec<f64>,
-}
-
-impl Value {
-    /// A tensor that is computed.
-    fn computed(kind: Kind, dims: Vec<usize>) -> Value {
-        Value { kind, dims, sources: 0, stored: false, list: Vec::new() }
-    }
-}
-
-/// A node with what is known of its inputs; an input that is left out is None.
-pub(crate) struct Call<'a> {
-    pub node: &'a NodeProto,
-    pub inputs: Vec<Option<&'a Value>>,
-}
+use crate::call::{Call, Kind, MAX_RANK, Value, elements};
 
 /// The output of a node. Its dependence is the union of the inputs'. Errors: [`Error::Op`],
 /// [`Error::Graph`], [`Error::TensorShape`].
@@ -94,138 +30,18 @@ pub(crate) fn infer(call: &Call<'_>) -> Result<Value, Error> {
         "Expand" => expand(call),
         "Transpose" => transpose(call),
         "Resize" => resize(call),
-        op => Err(Error::Op { op: op.into(), node: call.output().into() }),
+        op => Err(Error::Op {
+            op: op.into(),
+            node: call.output().into(),
+        }),
     }?;
     elements(&out.dims).ok_or_else(|| call.bad("its output is too large"))?;
-    out.sources = call.inputs.iter().flatten().fold(0, |bits, v| bits | v.sources);
+    out.sources = call
+        .inputs
+        .iter()
+        .flatten()
+        .fold(0, |bits, v| bits | v.sources);
     Ok(out)
-}
-
-/// Numbers of a tensor, at most [`MAX_ELEMENTS`], of at most 6 axes that are not empty.
-pub(crate) fn elements(dims: &[usize]) -> Option<usize> {
-    if dims.len() > MAX_RANK || dims.contains(&0) {
-        return None;
-    }
-    let product = dims.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
-    product.filter(|&n| n <= MAX_ELEMENTS)
-}
-
-impl Call<'_> {
-    pub fn output(&self) -> &str {
-        self.node.output.first().map_or("", String::as_str)
-    }
-
-    fn bad(&self, reason: &str) -> Error {
-        Error::Graph { reason: format!("{} {}: {reason}", self.node.op_type, self.output()) }
-    }
-
-    /// Checks the number of inputs and the names of the attributes.
-    fn takes(&self, inputs: std::ops::RangeInclusive<usize>, attributes: &[&str]) -> Result<(), Error> {
-        if !inputs.contains(&self.inputs.len()) {
-            return Err(self.bad(&format!("{} inputs", self.inputs.len())));
-        }
-        let given = &self.node.attribute;
-        for (i, a) in given.iter().enumerate() {
-            if !attributes.contains(&a.name.as_str()) || given[..i].iter().any(|b| b.name == a.name) {
-                return Err(self.bad(&format!("its attribute {} does not belong here", a.name)));
-            }
-        }
-        Ok(())
-    }
-
-    fn input(&self, i: usize) -> Result<&Value, Error> {
-        let value = self.inputs.get(i).copied().flatten();
-        value.ok_or_else(|| self.bad(&format!("its input {i} is missing")))
-    }
-
-    fn float(&self, i: usize) -> Result<&Value, Error> {
-        let value = self.input(i)?;
-        if value.kind == Kind::F32 { Ok(value) } else { Err(self.bad(&format!("its input {i} is not float32"))) }
-    }
-
-    /// A float32 tensor of the file.
-    fn weight(&self, i: usize) -> Result<&Value, Error> {
-        let value = self.float(i)?;
-        if value.stored { Ok(value) } else { Err(self.bad(&format!("its input {i} is not a weight of the file"))) }
-    }
-
-    /// A short list of whole numbers of the file.
-    fn integers(&self, i: usize) -> Result<Vec<i64>, Error> {
-        let value = self.input(i)?;
-        if value.kind != Kind::I64 || !value.stored || value.dims.len() != 1 || value.list.len() != value.dims[0] {
-            return Err(self.bad(&format!("its input {i} is not a short stored list of int64")));
-        }
-        Ok(value.list.iter().map(|&x| x as i64).collect())
-    }
-
-    fn expect(&self, i: usize, found: &[usize], expected: &[usize]) -> Result<(), Error> {
-        if found == expected { Ok(()) } else { Err(self.shape(i, &format!("{expected:?}"))) }
-    }
-
-    fn shape(&self, i: usize, expected: &str) -> Error {
-        Error::TensorShape {
-            tensor: self.node.input.get(i).cloned().unwrap_or_default(),
-            expected: format!("{expected} ({} {})", self.node.op_type, self.output()),
-            found: self.inputs.get(i).copied().flatten().map(|v| v.dims.clone()).unwrap_or_default(),
-        }
-    }
-
-    fn attribute(&self, name: &str, code: i32) -> Result<Option<&AttributeProto>, Error> {
-        match self.node.attribute.iter().find(|a| a.name == name) {
-            Some(a) if a.r#type != code => Err(self.bad(&format!("its attribute {name} has a wrong type"))),
-            found => Ok(found),
-        }
-    }
-
-    fn int(&self, name: &str, default: i64) -> Result<i64, Error> {
-        Ok(self.attribute(name, 2)?.map_or(default, |a| a.i))
-    }
-
-    fn number(&self, name: &str, default: f32) -> Result<f32, Error> {
-        let value = self.attribute(name, 1)?.map_or(default, |a| a.f);
-        if value.is_finite() { Ok(value) } else { Err(self.bad(&format!("its attribute {name} is not finite"))) }
-    }
-
-    fn text(&self, name: &str, default: &str, allowed: &[&str]) -> Result<(), Error> {
-        let value = self.attribute(name, 3)?.map_or(default.as_bytes(), |a| a.s.as_slice());
-        if allowed.iter().any(|a| a.as_bytes() == value) {
-            return Ok(());
-        }
-        Err(self.bad(&format!("its attribute {name} is not one of {allowed:?}")))
-    }
-
-    /// A list attribute of `N` whole numbers within `bounds`.
-    fn ints<const N: usize>(&self, name: &str, default: [usize; N], bounds: std::ops::RangeInclusive<usize>) -> Result<[usize; N], Error> {
-        let Some(a) = self.attribute(name, 7)? else { return Ok(default) };
-        let list: Option<Vec<usize>> = a.ints.iter().map(|&i| usize::try_from(i).ok()).collect();
-        list.and_then(|l| <[usize; N]>::try_from(l).ok())
-            .filter(|l| l.iter().all(|i| bounds.contains(i)))
-            .ok_or_else(|| self.bad(&format!("its attribute {name} is not {N} numbers within {} to {}", bounds.start(), bounds.end())))
-    }
-
-    /// An axis of a tensor of `rank` axes; negative ones count from the end.
-    fn axis(&self, axis: i64, rank: usize) -> Result<usize, Error> {
-        let from_end = if axis < 0 { axis.checked_add(rank as i64) } else { Some(axis) };
-        let axis = from_end.and_then(|a| usize::try_from(a).ok()).filter(|&a| a < rank);
-        axis.ok_or_else(|| self.bad("an axis is out of range"))
-    }
-
-    /// The axes of input 1, distinct and sorted.
-    fn axes(&self, rank: usize) -> Result<Vec<usize>, Error> {
-        let mut axes = self.integers(1)?.into_iter().map(|a| self.axis(a, rank)).collect::<Result<Vec<_>, _>>()?;
-        let given = axes.len();
-        axes.sort_unstable();
-        axes.dedup();
-        if axes.len() != given || given == 0 {
-            return Err(self.bad("its axes repeat or are none"));
-        }
-        Ok(axes)
-    }
-
-    fn work(&self, factors: &[usize]) -> Result<(), Error> {
-        let work = factors.iter().try_fold(1usize, |n, &f| n.checked_mul(f));
-        if work.is_some_and(|w| w <= MAX_WORK) { Ok(()) } else { Err(self.bad("it asks for too much work")) }
-    }
 }
 
 fn cast(call: &Call<'_>) -> Result<Value, Error> {
@@ -240,7 +56,11 @@ fn cast(call: &Call<'_>) -> Result<Value, Error> {
 fn gather(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &["axis"])?;
     let (table, rows) = (call.input(0)?, call.input(1)?);
-    if table.kind == Kind::I64 || !table.stored || rows.kind != Kind::I64 || call.int("axis", 0)? != 0 {
+    if table.kind == Kind::I64
+        || !table.stored
+        || rows.kind != Kind::I64
+        || call.int("axis", 0)? != 0
+    {
         return Err(call.bad("only rows (int64) of a stored table are read"));
     }
     if table.dims.len() != 2 {
@@ -277,7 +97,8 @@ fn squeeze(call: &Call<'_>) -> Result<Value, Error> {
 fn broadcast(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
     let (a, b) = (call.float(0)?, call.float(1)?);
-    let dims = join(&a.dims, &b.dims).ok_or_else(|| call.shape(1, &format!("one that fits {:?}", a.dims)))?;
+    let dims = join(&a.dims, &b.dims)
+        .ok_or_else(|| call.shape(1, &format!("one that fits {:?}", a.dims)))?;
     Ok(Value::computed(Kind::F32, dims))
 }
 
@@ -322,7 +143,8 @@ fn concat(call: &Call<'_>) -> Result<Value, Error> {
     let axis = call.axis(call.int("axis", 0)?, dims.len())?;
     for i in 1..call.inputs.len() {
         let next = &call.float(i)?.dims;
-        let fits = next.len() == dims.len() && (0..dims.len()).all(|k| k == axis || next[k] == dims[k]);
+        let fits =
+            next.len() == dims.len() && (0..dims.len()).all(|k| k == axis || next[k] == dims[k]);
         if !fits {
             return Err(call.shape(i, &format!("{dims:?} but for axis {axis}")));
         }
@@ -334,7 +156,14 @@ fn concat(call: &Call<'_>) -> Result<Value, Error> {
 
 /// Conv and ConvTranspose in two dimensions, one group, no dilation.
 fn convolution(call: &Call<'_>, transposed: bool) -> Result<Value, Error> {
-    let common = ["kernel_shape", "strides", "pads", "dilations", "group", "output_padding"];
+    let common = [
+        "kernel_shape",
+        "strides",
+        "pads",
+        "dilations",
+        "group",
+        "output_padding",
+    ];
     call.takes(2..=3, if transposed { &common } else { &common[..5] })?;
     let (x, w) = (call.float(0)?, call.weight(1)?);
     let &[batch, channels, height, width] = x.dims.as_slice() else {
@@ -366,26 +195,44 @@ fn convolution(call: &Call<'_>, transposed: bool) -> Result<Value, Error> {
     let extra = call.ints("output_padding", [0, 0], 0..=7)?;
     let mut sides = [0; 2];
     for (a, (side, size)) in sides.iter_mut().zip([height, width]).enumerate() {
-        if pads[a] >= kernel[a] || pads[a + 2] >= kernel[a] || (extra[a] > 0 && extra[a] >= strides[a]) {
+        if pads[a] >= kernel[a]
+            || pads[a + 2] >= kernel[a]
+            || (extra[a] > 0 && extra[a] >= strides[a])
+        {
             return Err(call.bad("its padding is larger than its kernel or stride"));
         }
         let pad = pads[a] + pads[a + 2];
         let out = if transposed {
             ((size - 1) * strides[a] + kernel[a] + extra[a]).checked_sub(pad)
         } else {
-            (size + pad).checked_sub(kernel[a]).map(|free| free / strides[a] + 1)
+            (size + pad)
+                .checked_sub(kernel[a])
+                .map(|free| free / strides[a] + 1)
         };
-        *side = out.filter(|&n| n > 0).ok_or_else(|| call.bad("its output is empty"))?;
+        *side = out
+            .filter(|&n| n > 0)
+            .ok_or_else(|| call.bad("its output is empty"))?;
     }
     let [rows, columns] = if transposed { [height, width] } else { sides };
-    call.work(&[batch, channels, outputs, kernel_rows, kernel_columns, rows, columns])?;
-    Ok(Value::computed(Kind::F32, vec![batch, outputs, sides[0], sides[1]]))
+    call.work(&[
+        batch,
+        channels,
+        outputs,
+        kernel_rows,
+        kernel_columns,
+        rows,
+        columns,
+    ])?;
+    Ok(Value::computed(
+        Kind::F32,
+        vec![batch, outputs, sides[0], sides[1]],
+    ))
 }
 
 fn batch_normalization(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(5..=5, &["epsilon", "momentum", "training_mode"])?;
-    if call.number("epsilon", 1e-5)? < 0.0 || call.int("training_mode", 0)? != 0 {
-        return Err(call.bad("its epsilon is negative or it is in training mode"));
+    if call.number("epsilon", 1e-5)? <= 0.0 || call.int("training_mode", 0)? != 0 {
+        return Err(call.bad("its epsilon is not above 0 or it is in training mode"));
     }
     call.number("momentum", 0.9)?;
     let x = call.float(0)?;
@@ -434,7 +281,10 @@ fn gemm(call: &Call<'_>) -> Result<Value, Error> {
 
 fn mat_mul(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
-    let (&[rows, inner], &[inner_b, columns]) = (call.float(0)?.dims.as_slice(), call.float(1)?.dims.as_slice()) else {
+    let (&[rows, inner], &[inner_b, columns]) = (
+        call.float(0)?.dims.as_slice(),
+        call.float(1)?.dims.as_slice(),
+    ) else {
         return Err(call.bad("only two axes are read"));
     };
     if inner != inner_b {
@@ -457,7 +307,10 @@ fn reshape(call: &Call<'_>) -> Result<Value, Error> {
     for (i, &want) in wanted.iter().enumerate() {
         dims.push(match want {
             // 0 copies the axis, -1 is what is left
-            0 => *x.dims.get(i).ok_or_else(|| call.bad("it copies an axis that is not there"))?,
+            0 => *x
+                .dims
+                .get(i)
+                .ok_or_else(|| call.bad("it copies an axis that is not there"))?,
             -1 if free.is_none() => {
                 free = Some(i);
                 1
@@ -478,9 +331,16 @@ fn reshape(call: &Call<'_>) -> Result<Value, Error> {
 fn expand(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
     let x = call.float(0)?;
-    let wanted: Option<Vec<usize>> = call.integers(1)?.iter().map(|&n| usize::try_from(n).ok()).collect();
+    let wanted: Option<Vec<usize>> = call
+        .integers(1)?
+        .iter()
+        .map(|&n| usize::try_from(n).ok())
+        .collect();
     let dims = wanted.and_then(|w| join(&x.dims, &w));
-    Ok(Value::computed(Kind::F32, dims.ok_or_else(|| call.shape(0, "one that stretches to the wanted"))?))
+    Ok(Value::computed(
+        Kind::F32,
+        dims.ok_or_else(|| call.shape(0, "one that stretches to the wanted"))?,
+    ))
 }
 
 fn transpose(call: &Call<'_>) -> Result<Value, Error> {
@@ -494,23 +354,46 @@ fn transpose(call: &Call<'_>) -> Result<Value, Error> {
         return Err(call.bad("its perm is no permutation"));
     }
     // each is within 0 and the rank
-    Ok(Value::computed(Kind::F32, perm.iter().map(|&i| x.dims[i as usize]).collect()))
+    Ok(Value::computed(
+        Kind::F32,
+        perm.iter().map(|&i| x.dims[i as usize]).collect(),
+    ))
 }
 
 /// Nearest neighbour, to a whole multiple of both sides, given by scales or by sizes.
 fn resize(call: &Call<'_>) -> Result<Value, Error> {
-    call.takes(3..=4, &["mode", "coordinate_transformation_mode", "nearest_mode"])?;
+    call.takes(
+        3..=4,
+        &["mode", "coordinate_transformation_mode", "nearest_mode"],
+    )?;
     call.text("mode", "nearest", &["nearest"])?;
-    call.text("coordinate_transformation_mode", "half_pixel", &["half_pixel", "asymmetric"])?;
-    call.text("nearest_mode", "round_prefer_floor", &["floor", "round_prefer_floor"])?;
+    call.text(
+        "coordinate_transformation_mode",
+        "half_pixel",
+        &["half_pixel", "asymmetric"],
+    )?;
+    call.text(
+        "nearest_mode",
+        "round_prefer_floor",
+        &["floor", "round_prefer_floor"],
+    )?;
     let x = call.float(0)?;
     if x.dims.len() != 4 {
         return Err(call.shape(0, "batch x channels x rows x columns"));
     }
-    let wanted: Vec<f64> = match (call.inputs[1], call.inputs[2], call.inputs.get(3).copied().flatten()) {
+    let wanted: Vec<f64> = match (
+        call.inputs[1],
+        call.inputs[2],
+        call.inputs.get(3).copied().flatten(),
+    ) {
         (None, Some(_), None) => {
             let scales = call.weight(2)?;
-            scales.list.iter().zip(&x.dims).map(|(s, &d)| s * d as f64).collect()
+            scales
+                .list
+                .iter()
+                .zip(&x.dims)
+                .map(|(s, &d)| s * d as f64)
+                .collect()
         }
         (None, None, Some(_)) => call.integers(3)?.iter().map(|&n| n as f64).collect(),
         _ => return Err(call.bad("either scales or sizes are read")),
@@ -519,8 +402,15 @@ fn resize(call: &Call<'_>) -> Result<Value, Error> {
         let times = want / have as f64;
         times.fract() == 0.0 && (1.0..=64.0).contains(&times)
     };
-    if wanted.len() != 4 || !wanted.iter().zip(&x.dims).all(whole) || wanted[0] != x.dims[0] as f64 || wanted[1] != x.dims[1] as f64 {
+    if wanted.len() != 4
+        || !wanted.iter().zip(&x.dims).all(whole)
+        || wanted[0] != x.dims[0] as f64
+        || wanted[1] != x.dims[1] as f64
+    {
         return Err(call.bad("only whole multiples of both sides are read"));
     }
-    Ok(Value::computed(Kind::F32, wanted.iter().map(|&n| n as usize).collect()))
+    Ok(Value::computed(
+        Kind::F32,
+        wanted.iter().map(|&n| n as usize).collect(),
+    ))
 }

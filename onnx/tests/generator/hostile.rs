@@ -19,7 +19,10 @@ fn text(error: &Error) -> String {
 /// Loads and runs; what comes of it is finite or an error.
 fn try_all(bytes: &[u8]) -> Result<(), Error> {
     let generator = Generator::from_bytes(bytes)?;
-    let correction = generator.correct(&Request { pins: &[(0, 0)], ..Request::new("heavy blue denim") })?;
+    let correction = generator.correct(&Request {
+        pins: &[(0, 0)],
+        ..Request::new("heavy blue denim")
+    })?;
     assert!(correction.field.iter().all(|k| k.is_finite() && *k > 0.0));
     Ok(())
 }
@@ -50,7 +53,13 @@ fn tensor(name: &str, change: impl FnOnce(&mut Tensor)) -> Error {
 }
 
 fn metadata(key: &str, value: &str) -> Error {
-    refused(&changed(|m| m.metadata_props.iter_mut().find(|e| e.key == key).unwrap().value = value.into()))
+    refused(&changed(|m| {
+        m.metadata_props
+            .iter_mut()
+            .find(|e| e.key == key)
+            .unwrap()
+            .value = value.into()
+    }))
 }
 
 #[test]
@@ -93,7 +102,10 @@ fn flip(count: u32, seed: u64, place: impl Fn(u64, usize) -> usize) -> (u32, u32
 #[test]
 fn flipped_bits_anywhere() {
     let (_, taken) = flip(300, 1, |random, length| (random % length as u64) as usize);
-    assert!(taken > 100, "most of the file is weights, where a flip only changes a number");
+    assert!(
+        taken > 100,
+        "most of the file is weights, where a flip only changes a number"
+    );
 }
 
 #[test]
@@ -125,12 +137,23 @@ fn overwritten_stretches() {
 
 #[test]
 fn other_files() {
-    for bytes in [&b""[..], b"\0", b"\x89PNG\r\n\x1a\n", b"hello world, this is no model", &[0xff; 100]] {
+    for bytes in [
+        &b""[..],
+        b"\0",
+        b"\x89PNG\r\n\x1a\n",
+        b"hello world, this is no model",
+        &[0xff; 100],
+    ] {
         let error = try_all(bytes).unwrap_err();
         text(&error);
     }
     let huge = vec![0; MAX_FILE_BYTES + 1];
-    assert_eq!(try_all(&huge), Err(Error::TooLarge { limit: MAX_FILE_BYTES }));
+    assert_eq!(
+        try_all(&huge),
+        Err(Error::TooLarge {
+            limit: MAX_FILE_BYTES
+        })
+    );
     // an ONNX file of someone else
     let error = refused(&changed(|m| m.metadata_props.clear()));
     assert_eq!(error, Error::MetadataMissing { key: "taut.format" });
@@ -138,12 +161,25 @@ fn other_files() {
 
 #[test]
 fn metadata_against_tensors() {
-    assert!(matches!(metadata("taut.grid", "64"), Error::TensorShape { tensor, .. } if tensor == "pin_distance"));
-    assert!(matches!(metadata("taut.noise", "64"), Error::TensorShape { tensor, .. } if tensor == "noise"));
-    assert!(matches!(metadata("taut.tokens", "8"), Error::TensorShape { tensor, .. } if tensor == "tokens"));
+    assert!(
+        matches!(metadata("taut.grid", "64"), Error::TensorShape { tensor, .. } if tensor == "pin_distance")
+    );
+    assert!(
+        matches!(metadata("taut.noise", "64"), Error::TensorShape { tensor, .. } if tensor == "noise")
+    );
+    assert!(
+        matches!(metadata("taut.tokens", "8"), Error::TensorShape { tensor, .. } if tensor == "tokens")
+    );
     let error = metadata("taut.vocabulary", "<pad>\ndenim\nsilk");
-    assert!(matches!(&error, Error::TensorShape { tensor, .. } if tensor == "words"), "{error}");
-    for (key, value) in [("taut.grid", "999999999"), ("taut.vocabulary", "<pad>\ndenim\ndenim"), ("taut.format", "2")] {
+    assert!(
+        matches!(&error, Error::TensorShape { tensor, .. } if tensor == "words"),
+        "{error}"
+    );
+    for (key, value) in [
+        ("taut.grid", "999999999"),
+        ("taut.vocabulary", "<pad>\ndenim\ndenim"),
+        ("taut.format", "2"),
+    ] {
         assert!(matches!(metadata(key, value), Error::Metadata { key: named, .. } if named == key));
     }
     for (key, _) in METADATA {
@@ -154,13 +190,29 @@ fn metadata_against_tensors() {
 
 #[test]
 fn operations_that_do_not_belong() {
-    for op in ["Loop", "If", "Scan", "RandomNormal", "Foo", "NonZero", "ConstantOfShape", "", "Einsum"] {
+    for op in [
+        "Loop",
+        "If",
+        "Scan",
+        "RandomNormal",
+        "Foo",
+        "NonZero",
+        "ConstantOfShape",
+        "",
+        "Einsum",
+    ] {
         let error = node("z", |n| n.op_type = op.into());
-        assert!(matches!(&error, Error::Op { op: named, .. } if named == op), "{error}");
+        assert!(
+            matches!(&error, Error::Op { op: named, .. } if named == op),
+            "{error}"
+        );
     }
     let error = node("y4", |n| n.domain = "com.example".into());
     assert!(text(&error).contains("com.example.Relu"), "{error}");
-    assert!(matches!(node("fabric", |n| n.op_type = "Relu".into()), Error::Graph { .. }));
+    assert!(matches!(
+        node("fabric", |n| n.op_type = "Relu".into()),
+        Error::Graph { .. }
+    ));
 }
 
 #[test]
@@ -170,28 +222,69 @@ fn shapes_that_do_not_fit() {
         _ => panic!("{error}"),
     };
     named(tensor("first.f16", |t| t.dims[0] -= 1), "first.f16");
-    named(tensor("first.f16", |t| t.dims = vec![CHANNELS as i64, 136, 5, 5]), "first");
-    named(tensor("first.f16", |t| t.dims = vec![136, CHANNELS as i64, 25]), "first");
-    named(tensor("last.bias.f16", |t| { t.dims = vec![2]; t.raw_data.truncate(4); }), "last.bias");
-    named(tensor("normal.var.f16", |t| { t.dims = vec![3]; t.raw_data.truncate(6); }), "normal.var");
+    named(
+        tensor("first.f16", |t| t.dims = vec![CHANNELS as i64, 136, 5, 5]),
+        "first",
+    );
+    named(
+        tensor("first.f16", |t| t.dims = vec![136, CHANNELS as i64, 25]),
+        "first",
+    );
+    named(
+        tensor("last.bias.f16", |t| {
+            t.dims = vec![2];
+            t.raw_data.truncate(4);
+        }),
+        "last.bias",
+    );
+    named(
+        tensor("normal.var.f16", |t| {
+            t.dims = vec![3];
+            t.raw_data.truncate(6);
+        }),
+        "normal.var",
+    );
     named(tensor("head.f16", |t| t.dims = vec![10, 4]), "head");
-    named(tensor("head.f16", |t| { t.dims = vec![8, 4]; t.raw_data.truncate(64); }), "fabric");
+    named(
+        tensor("head.f16", |t| {
+            t.dims = vec![8, 4];
+            t.raw_data.truncate(64);
+        }),
+        "fabric",
+    );
     named(tensor("words.f16", |t| t.dims = vec![8, 10]), "words");
     named(tensor("words.f16", |t| t.raw_data.clear()), "words.f16");
-    named(node("x4", |n| n.attribute[1] = ints("strides", &[1, 1])), "pin_distance");
+    named(
+        node("x4", |n| n.attribute[2] = ints("pads", &[0; 4])),
+        "pin_distance",
+    );
     // sizes that no machine has
-    for dims in [vec![i64::MAX], vec![1 << 40, 1 << 40], vec![-1], vec![0], vec![1; 100], vec![i64::MIN, 2]] {
+    for dims in [
+        vec![i64::MAX],
+        vec![1 << 40, 1 << 40],
+        vec![-1],
+        vec![0],
+        vec![1; 100],
+        vec![i64::MIN, 2],
+    ] {
         let error = tensor("words.f16", |t| t.dims = dims);
         assert!(text(&error).contains("words.f16"), "{error}");
     }
-    let error = tensor("scales", |t| t.raw_data = [1f32, 1.0, 1e9, 1e9].iter().flat_map(|x| x.to_le_bytes()).collect());
+    let error = tensor("scales", |t| {
+        t.raw_data = [1f32, 1.0, 1e9, 1e9]
+            .iter()
+            .flat_map(|x| x.to_le_bytes())
+            .collect()
+    });
     assert!(text(&error).contains("y32"), "{error}");
     let bomb = |b: &mut Builder| {
-        b.integers("wide", &[1 << 20, 1 << 20, 1 << 20]);
+        b.integers("wide", &[1 << 20, 1 << 20, 128]);
         b.op("Expand", &["noise", "wide"], "bomb", vec![]);
     };
     let error = graph(|g| {
-        let mut b = Builder { graph: std::mem::take(g) };
+        let mut b = Builder {
+            graph: std::mem::take(g),
+        };
         bomb(&mut b);
         *g = b.graph;
     });
@@ -263,28 +356,96 @@ fn graphs_that_are_put_together_wrongly() {
     reason(node("y4", |n| n.output[0] = "a\nb".into()), "plain");
     reason(node("y4", |n| n.output.clear()), "0 outputs");
     reason(node("vectors", |n| n.input[1] = "weights".into()), "int64");
-    reason(node("told", |n| n.input[0] = "z".into()), "head");
+    reason(node("told", |n| n.input[0] = "noise".into()), "head");
     reason(graph(|g| g.node.clear()), "no node writes");
     reason(graph(|g| g.node.reverse()), "not there before it");
-    reason(graph(|g| { g.initializer.pop(); }), "last.bias.f16");
-    reason(graph(|g| { let t = g.initializer[0].clone(); g.initializer.push(t); }), "twice");
-    reason(graph(|g| { g.input.pop(); }), "pin_distance");
-    reason(graph(|g| { g.output.pop(); }), "fabric");
-    reason(graph(|g| { let i = g.input[0].clone(); g.input.push(i); }), "other inputs");
+    reason(
+        graph(|g| {
+            g.initializer.pop();
+        }),
+        "last.bias.f16",
+    );
+    reason(
+        graph(|g| {
+            let t = g.initializer[0].clone();
+            g.initializer.push(t);
+        }),
+        "twice",
+    );
+    reason(
+        graph(|g| {
+            g.input.pop();
+        }),
+        "pin_distance",
+    );
+    reason(
+        graph(|g| {
+            g.output.pop();
+        }),
+        "fabric",
+    );
+    reason(
+        graph(|g| {
+            let i = g.input[0].clone();
+            g.input.push(i);
+        }),
+        "other inputs",
+    );
     reason(graph(|g| g.input[0].name = "words".into()), "tokens");
     reason(graph(|g| g.input[0].of = None), "type");
-    reason(graph(|g| g.input[0].of.as_mut().unwrap().tensor.as_mut().unwrap().elem_type = FLOAT), "I64");
-    reason(graph(|g| g.output[0].of.as_mut().unwrap().tensor.as_mut().unwrap().shape = None), "field");
+    reason(
+        graph(|g| {
+            g.input[0]
+                .of
+                .as_mut()
+                .unwrap()
+                .tensor
+                .as_mut()
+                .unwrap()
+                .elem_type = FLOAT
+        }),
+        "I64",
+    );
+    reason(
+        graph(|g| {
+            g.output[0]
+                .of
+                .as_mut()
+                .unwrap()
+                .tensor
+                .as_mut()
+                .unwrap()
+                .shape = None
+        }),
+        "field",
+    );
     reason(graph(|g| g.initializer[0].name = "tokens".into()), "twice");
     reason(refused(&changed(|m| m.graph = None)), "missing");
     reason(refused(&changed(|m| m.ir_version = 3)), "IR version");
-    reason(refused(&changed(|m| m.opset_import[0].version = 9)), "operator set 17");
-    reason(refused(&changed(|m| m.opset_import.clear())), "operator set 17");
-    reason(refused(&changed(|m| m.opset_import[0].domain = "ai.onnx.ml".into())), "operator set 17");
+    reason(
+        refused(&changed(|m| m.opset_import[0].version = 9)),
+        "operator set 17",
+    );
+    reason(
+        refused(&changed(|m| m.opset_import.clear())),
+        "operator set 17",
+    );
+    reason(
+        refused(&changed(|m| m.opset_import[0].domain = "ai.onnx.ml".into())),
+        "operator set 17",
+    );
     // the fabric must not change with the seed
-    reason(node("told", |n| { n.op_type = "Add".into(); n.input = vec!["head_bias".into(), "noise".into()]; }), "head_bias");
+    reason(
+        node("told", |n| {
+            n.op_type = "Add".into();
+            n.input = vec!["head_bias".into(), "noise".into()];
+        }),
+        "head_bias",
+    );
     let error = graph(|g| {
-        let mut b = Builder { graph: std::mem::take(g) };
+        let mut b = Builder {
+            graph: std::mem::take(g),
+        };
         b.graph.node.retain(|n| n.output[0] != "fabric");
         b.integers("five", &[1, -1]);
         b.weight("mix", &[NOISE, 5], &vec![0.1; NOISE * 5]);
@@ -296,7 +457,12 @@ fn graphs_that_are_put_together_wrongly() {
     reason(error, "more than the words");
     reason(
         graph(|g| {
-            g.node = (0..2000).map(|i| Node { output: vec![format!("n{i}")], ..Node::default() }).collect();
+            g.node = (0..2000)
+                .map(|i| Node {
+                    output: vec![format!("n{i}")],
+                    ..Node::default()
+                })
+                .collect();
         }),
         "1000",
     );
@@ -304,7 +470,10 @@ fn graphs_that_are_put_together_wrongly() {
 
 #[test]
 fn tensors_that_are_not_in_the_file() {
-    let external = Entry { key: "location".into(), value: "/etc/passwd".into() };
+    let external = Entry {
+        key: "location".into(),
+        value: "/etc/passwd".into(),
+    };
     let error = tensor("first.f16", |t| {
         t.raw_data.clear();
         t.external_data = vec![external];
@@ -324,11 +493,24 @@ fn tensors_that_are_not_in_the_file() {
 
 #[test]
 fn weights_that_are_not_finite() {
-    for (name, bits) in [("words.f16", half(f32::NAN)), ("first.f16", half(f32::INFINITY)), ("last.bias.f16", 0xfc00)] {
-        let error = tensor(name, |t| t.raw_data[2..4].copy_from_slice(&bits.to_le_bytes()));
-        assert_eq!(error, Error::Weights { tensor: name.into() });
+    for (name, bits) in [
+        ("words.f16", half(f32::NAN)),
+        ("first.f16", half(f32::INFINITY)),
+        ("last.bias.f16", 0xfc00),
+    ] {
+        let error = tensor(name, |t| {
+            t.raw_data[2..4].copy_from_slice(&bits.to_le_bytes())
+        });
+        assert_eq!(
+            error,
+            Error::Weights {
+                tensor: name.into()
+            }
+        );
     }
-    // finite weights, and yet no finite field: the root of a negative variance
-    let error = tensor("normal.var.f16", |t| t.raw_data[..2].copy_from_slice(&half(-1.0).to_le_bytes()));
-    assert!(matches!(error, Error::Output { output: "field", value } if value.is_nan()), "{error}");
+    // finite, and yet its root is not
+    let error = tensor("normal.var.f16", |t| {
+        t.raw_data[..2].copy_from_slice(&half(-1.0).to_le_bytes())
+    });
+    assert!(text(&error).contains("variance"), "{error}");
 }
