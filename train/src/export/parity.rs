@@ -72,7 +72,7 @@ pub fn run_rounded(
     words: &WordTable,
     input: &ParityInput,
 ) -> Result<ParitySample, ExportError> {
-    words.check()?;
+    super::words::check_words(words)?;
     let batch = input.batch()?;
     let mut descriptions = vec![0.0f32; batch * DESCRIPTION];
     for ((tokens, weights), sum) in input

@@ -15,6 +15,7 @@ use prost::Message;
 
 use super::graph::GraphBuilder;
 use super::proto::{ModelProto, OperatorSetIdProto, StringStringEntryProto, data_type};
+use super::words::check_words;
 use super::{ExportError, ExportMeta, MAX_FILE_BYTES, TOKENS, WordTable};
 use crate::nets::generator::Deconvolution;
 use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, Generator, NOISE};
@@ -34,7 +35,7 @@ pub fn export(
     words: &WordTable,
     meta: &ExportMeta,
 ) -> Result<Vec<u8>, ExportError> {
-    words.check()?;
+    check_words(words)?;
     let metadata_props = meta
         .properties(words)?
         .into_iter()
