@@ -82,11 +82,11 @@ pub(crate) fn project(
             }
         }
     }
-    // omega^2 dt^2 + 2 c dt share = 4 share, solved for dt
+    // omega^2 dt^2 + 2 c dt share = 4 share, solved for dt without cancellation
     let w = f64::from(worst) / f64::from(share);
     let c = f64::from(def.damping_per_s);
     let max_dt = if w > 0.0 {
-        ((libm::sqrt(c * c + 4.0 * w) - c) / w) as f32
+        (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32
     } else {
         f32::INFINITY
     };
@@ -116,7 +116,8 @@ pub(crate) fn particle_mass(grid: &Grid, def: &ClothDef) -> f32 {
 fn channels(target: &[&mut [f32]; 4], at: usize) -> [f32; 4] {
     let [warp, weft, shear, bend] =
         [0, 1, 2, 3].map(|c| target.get(c).map_or(0.0, |p| read(p, at)));
-    let bend = min(bend, BEND_SHARE * (0.5 * (warp + weft)));
+    // halved before the sum, which could overflow
+    let bend = min(bend, BEND_SHARE * (0.5 * warp + 0.5 * weft));
     let top = max(max(warp, weft), shear);
     let s = if top > MAX_STIFFNESS {
         MAX_STIFFNESS / top

@@ -53,7 +53,7 @@ impl<'a> Cloth<'a> {
     /// Numbers (f32) of memory that a cloth needs. Errors: those of [`ClothDef::check`].
     pub fn memory(grid: &Grid, def: &ClothDef) -> Result<usize, Error> {
         def.check()?;
-        Ok(Layout::new(grid, def)?.numbers())
+        Ok(Layout::new(grid, def).numbers())
     }
 
     /// Makes a cloth in the caller's block, flat and at rest. The block's content is overwritten.
@@ -61,7 +61,7 @@ impl<'a> Cloth<'a> {
     /// Errors: those of [`ClothDef::check`], [`Error::BlockTooSmall`].
     pub fn create(grid: &Grid, def: &ClothDef, block: &'a mut [f32]) -> Result<Cloth<'a>, Error> {
         def.check()?;
-        let layout = Layout::new(grid, def)?;
+        let layout = Layout::new(grid, def);
         let mut rest = block
             .get_mut(..layout.numbers())
             .ok_or(Error::BlockTooSmall)?;
@@ -315,13 +315,15 @@ impl<'a> Cloth<'a> {
         Ok(())
     }
 
-    /// Sets the velocity of a particle in m/s; a pinned one keeps that of its pin.
+    /// Sets the velocity of a particle in m/s; a pinned one keeps that of its pin. A change of pins before it is settled
+    /// first, so that it does not rescale this velocity.
     ///
     /// Errors: [`Error::NoSuchParticle`], [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e6 m/s).
     pub fn set_velocity(&mut self, particle: usize, v_m_s: Vector3<f32>) -> Result<(), Error> {
         let at = self.layout.place(particle)?;
         check_reach(v_m_s.cast())?;
         if self.pins.find(particle).is_err() {
+            self.refresh(true);
             self.set_velocity_at(at, [v_m_s.x, v_m_s.y, v_m_s.z]);
         }
         Ok(())

@@ -40,7 +40,7 @@ pub struct ClothDef {
     pub gravity_m_s2: [f32; 3],
     /// Damping c in 1/s: F_damping = -c M v. At least 0, and c dt below 1. Default 2.
     pub damping_per_s: f32,
-    /// Speed limit as a fraction of the smallest rest length per substep; 0 = none. Default 0.25.
+    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
     pub speed_limit: f32,
     /// Whether a compressed spring may push with at most k times its length, which keeps crumpled cloth from exploding:
     /// the factor 1 - L0/l of eq. 1 is kept at -1 or above. Default true.
@@ -53,7 +53,7 @@ pub struct ClothDef {
     pub inertia_radius_m: f32,
     /// Largest q of the inertia field, 1 to 1e4. Default 32.
     pub inertia_max: f32,
-    /// Most pins at a time, at most the number of particles. 28 bytes each. Default 256.
+    /// Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256.
     pub max_pins: u32,
     /// Optional parts. Default none.
     pub features: Features,
@@ -132,6 +132,7 @@ impl ClothDef {
             || !(1.0..=1e4).contains(&self.inertia_max)
             || self.inertia_radius_m > 1e4
             || self.speed_limit > 1e6
+            || (self.speed_limit > 0.0 && self.speed_limit < 1e-6)
             || length(&self.gravity_m_s2) > 1e4
             || self.features.0 > Features::PULL.0
             || !axis(&self.u_axis)

@@ -86,9 +86,11 @@ pub fn bilinear(
 ) -> f32 {
     let (r0, r1, fr) = place(at.0, to.0, from.0);
     let (c0, c1, fc) = place(at.1, to.1, from.1);
-    let top = value(r0, c0) * (1.0 - fc) + value(r0, c1) * fc;
-    let bottom = value(r1, c0) * (1.0 - fc) + value(r1, c1) * fc;
-    top * (1.0 - fr) + bottom * fr
+    // in this form a constant stays that constant to the bit, and the largest f32 does not overflow
+    let lerp = |a: f32, b: f32, share: f32| a + (b - a) * share;
+    let top = lerp(value(r0, c0), value(r0, c1), fc);
+    let bottom = lerp(value(r1, c0), value(r1, c1), fc);
+    lerp(top, bottom, fr)
 }
 
 /// Where place `i` of `n` lies among `size` places with both ends aligned: the two neighbours and the share of the second.

@@ -27,9 +27,9 @@ pub struct GridDef {
     pub rows: u32,
     /// Particles along u (n of the paper), 2 to 4096. Default 32.
     pub columns: u32,
-    /// Side length along u in m, above 0, at most 10,000. Default 1.
+    /// Side length along u in m, 1e-6 to 10,000. Default 1.
     pub width_m: f32,
-    /// Side length along v in m, above 0, at most 10,000. Default 1.
+    /// Side length along v in m, 1e-6 to 10,000. Default 1.
     pub height_m: f32,
     /// Spring families; the structural ones must be on. Default all.
     pub families: Families,
@@ -64,7 +64,8 @@ impl Grid {
         if !side(def.rows) || !side(def.columns) {
             return Err(Error::GridSize);
         }
-        let length = |l: f32| l > 0.0 && l <= 10_000.0;
+        // below, squared lengths and masses would underflow
+        let length = |l: f32| (1e-6..=10_000.0).contains(&l);
         if !length(def.width_m) || !length(def.height_m) {
             return Err(Error::SideLength);
         }

@@ -21,14 +21,11 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub fn new(grid: &Grid, def: &ClothDef) -> Result<Layout, Error> {
+    pub fn new(grid: &Grid, def: &ClothDef) -> Layout {
         let (rows, columns) = (grid.rows(), grid.columns());
-        if def.max_pins as usize > rows * columns {
-            return Err(Error::OutOfRange);
-        }
         let width = round16(columns);
         let stride = width + 16;
-        Ok(Layout {
+        Layout {
             rows,
             columns,
             width,
@@ -37,8 +34,9 @@ impl Layout {
             shear: grid.has_shear(),
             bend: grid.has_bend(),
             pull: def.features.contains(Features::PULL),
-            max_pins: def.max_pins as usize,
-        })
+            // the default asks for more than a small grid has particles
+            max_pins: (def.max_pins as usize).min(rows * columns),
+        }
     }
 
     /// Channels of the target field and planes of springs: 2 structural of each, then shear 1 and 2, bend 1 and 2.

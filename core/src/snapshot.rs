@@ -191,10 +191,16 @@ impl Cloth<'_> {
             *to = number(first + i);
         }
         self.pins.count = pins;
+        if self.has_pull && pull == 0 {
+            // a force that is pending now must not be added to one that is added later
+            for p in &mut self.pull {
+                p.fill(0.0);
+            }
+        }
         self.has_pull = pull == 1;
         self.step_index = u64_at(header, 24);
         debug_assert_eq!(next, (if pull == 1 { 9 } else { 6 }) * n);
-        if !same {
+        if !same || self.stale {
             // velocities were stored for the inertia of these pins: the momentum must not be kept a second time
             self.stale = true;
             self.refresh(false);
