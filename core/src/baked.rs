@@ -103,7 +103,9 @@ pub fn write(
         .chain(seeds)
         .chain(hash)
         .chain(field.iter().flat_map(|k| k.to_le_bytes()));
-    let (body, tail) = out.split_at_mut(size - 8);
+    let (body, tail) = out
+        .split_at_mut_checked(size - 8)
+        .ok_or(Error::BlockTooSmall)?;
     for (to, from) in body.iter_mut().zip(bytes) {
         *to = from;
     }

@@ -1,7 +1,7 @@
 use crate::budget::{self, BudgetReport};
 use crate::field::{self, FieldView};
 use crate::force::{Planes, Springs};
-use crate::layout::{Layout, PIN_NUMBERS, read, take, write};
+use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::math::round16;
 use crate::pins::Pins;
 use crate::{ClothDef, Error, Grid, Vector3, inertia};
@@ -229,7 +229,7 @@ impl<'a> Cloth<'a> {
         let l = self.layout;
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
-        former.copy_from_slice(self.inverse);
+        copy(former, self.inverse);
         let (pins, layout) = (&self.pins, &self.layout);
         let pinned = pins.iter().filter_map(|p| layout.place(p.particle).ok());
         inertia::inverse_masses(

@@ -95,10 +95,11 @@ pub fn bilinear(
 
 /// Where place `i` of `n` lies among `size` places with both ends aligned: the two neighbours and the share of the second.
 fn place(i: usize, n: usize, size: usize) -> (usize, usize, f32) {
-    let scaled = i * (size - 1);
-    let low = scaled / (n - 1);
-    let rest = scaled - low * (n - 1);
-    (low, (low + 1).min(size - 1), rest as f32 / (n - 1) as f32)
+    let (last, steps) = (size - 1, (n - 1).max(1));
+    let scaled = i * last;
+    let low = scaled / steps;
+    let rest = scaled - low * steps;
+    (low, (low + 1).min(last), rest as f32 / steps as f32)
 }
 
 #[cfg(test)]

@@ -72,7 +72,9 @@ impl Layout {
         if particle >= self.rows * self.columns {
             return Err(Error::NoSuchParticle);
         }
-        Ok(self.at(particle / self.columns, particle % self.columns))
+        // max: a grid has columns, but only so does the compiler know that nothing is divided by zero
+        let columns = self.columns.max(1);
+        Ok(self.at(particle / columns, particle % columns))
     }
 }
 
@@ -83,6 +85,14 @@ pub(crate) fn take<'a>(block: &mut &'a mut [f32], n: usize) -> Result<&'a mut [f
         .ok_or(Error::BlockTooSmall)?;
     *block = tail;
     Ok(head)
+}
+
+/// Copies as many numbers as both have.
+pub(crate) fn copy(to: &mut [f32], from: &[f32]) {
+    let n = to.len().min(from.len());
+    if let (Some(to), Some(from)) = (to.get_mut(..n), from.get(..n)) {
+        to.copy_from_slice(from);
+    }
 }
 
 /// The numbers of a row of a plane, empty where the plane has no such row (a family that is off).

@@ -91,7 +91,9 @@ impl Cloth<'_> {
         self.refresh(true);
         let size = self.snapshot_size();
         let out = out.get_mut(..size).ok_or(Error::BlockTooSmall)?;
-        let (body, tail) = out.split_at_mut(size - 8);
+        let (body, mut tail) = out
+            .split_at_mut_checked(size - 8)
+            .ok_or(Error::BlockTooSmall)?;
         let mut rest = &mut *body;
         put(&mut rest, MAGIC);
         put(&mut rest, &VERSION.to_le_bytes());
@@ -110,7 +112,7 @@ impl Cloth<'_> {
         );
         let mut h = Hash64::new();
         h.bytes(body);
-        tail.copy_from_slice(&h.finish().to_le_bytes());
+        put(&mut tail, &h.finish().to_le_bytes());
         Ok(size)
     }
 

@@ -1,5 +1,5 @@
 use crate::force::{Substep, position_row, velocity_row};
-use crate::layout::span;
+use crate::layout::{copy, span};
 use crate::math::min;
 use crate::{Cloth, Error};
 
@@ -132,8 +132,9 @@ impl Cloth<'_> {
         let planes = [
             &*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z,
         ];
-        for (good, plane) in self.good.chunks_exact_mut(self.layout.plane).zip(planes) {
-            good.copy_from_slice(plane);
+        let size = self.layout.plane.max(1);
+        for (good, plane) in self.good.chunks_exact_mut(size).zip(planes) {
+            copy(good, plane);
         }
     }
 
@@ -146,8 +147,9 @@ impl Cloth<'_> {
             &mut *self.v.y,
             &mut *self.v.z,
         ];
-        for (good, plane) in self.good.chunks_exact(self.layout.plane).zip(planes) {
-            plane.copy_from_slice(good);
+        let size = self.layout.plane.max(1);
+        for (good, plane) in self.good.chunks_exact(size).zip(planes) {
+            copy(plane, good);
         }
     }
 
