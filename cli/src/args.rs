@@ -1,0 +1,221 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+use taut::Budget;
+use taut_lab::scene::Scene;
+
+use crate::failure::{self, Failure};
+use crate::numbers::{self, GridSize, Sides};
+
+const EXAMPLES: &str = "Examples:
+  taut drape \"heavy blue denim\"                     picture, table and report in out/drape
+  taut drape \"light silk\" --scene edge --json       the report alone on stdout
+  taut correct \"heavy blue denim\" --out denim.taut  a stiffness field for taut_cloth_load_stiffness
+  taut info                                         the generator that is built in";
+
+/// Cloth for games that does not stretch like rubber: the fabric in words, the stiffness from a generator.
+#[derive(Parser, Debug)]
+#[command(name = "taut", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Simulates a scene with seven choices of stiffness: a picture, a table, a report.
+    Drape(Drape),
+    /// Writes the stiffness field of a fabric to a small file that the C library loads.
+    Correct(Correct),
+    /// Tells what a generator file is.
+    Info(Info),
+}
+
+/// The cloth and where its stiffness comes from.
+#[derive(Args, Debug)]
+pub struct Cloth {
+    /// The fabric in words, for example "heavy blue denim".
+    pub description: String,
+    /// hang2 (two top corners pinned), edge (top row pinned) or hang1 (one corner pinned).
+    #[arg(long, default_value = "hang2")]
+    pub scene: Scene,
+    /// Particles, each side 2 to 4096.
+    #[arg(long, value_name = "ROWSxCOLUMNS", default_value = "32x32", value_parser = numbers::grid, allow_negative_numbers = true)]
+    pub grid: GridSize,
+    /// Side lengths of the sheet in m.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1x1", value_parser = numbers::sides, allow_negative_numbers = true)]
+    pub size: Sides,
+    /// Another seed gives another field of the same fabric.
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    pub seed: u64,
+    /// A generator file instead of the one that is built in.
+    #[arg(long, value_name = "FILE.onnx")]
+    pub model: Option<PathBuf>,
+}
+
+/// `taut drape`.
+#[derive(Args, Debug)]
+pub struct Drape {
+    #[command(flatten)]
+    pub cloth: Cloth,
+    /// Frames per second, 1 to 10000.
+    #[arg(long, value_name = "HZ", default_value = "60", value_parser = numbers::rate, allow_negative_numbers = true)]
+    pub rate: f32,
+    /// Substeps of a frame, 1 to 1024. The reference takes as many as it needs.
+    #[arg(long, value_name = "N", default_value = "16", value_parser = numbers::substeps, allow_negative_numbers = true)]
+    pub substeps: u32,
+    /// tuned (80 % of the flat sheet's limit) or certified (stable from any start, half as stiff).
+    #[arg(long, default_value = "tuned", value_parser = numbers::budget)]
+    pub budget: Budget,
+    /// Mass per area, for all settings [default: what the generator tells].
+    #[arg(long, value_name = "KG_M2", value_parser = numbers::density, allow_negative_numbers = true)]
+    pub density: Option<f32>,
+    /// Simulated time in s, at most 3600.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = numbers::seconds, allow_negative_numbers = true)]
+    pub seconds: f32,
+    /// Folder for drape.png and report.json; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "out/drape")]
+    pub out: PathBuf,
+    /// Only the report on stdout; the table goes to stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `taut correct`.
+#[derive(Args, Debug)]
+pub struct Correct {
+    #[command(flatten)]
+    pub cloth: Cloth,
+    /// The file to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Tells what was written as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `taut info`.
+#[derive(Args, Debug)]
+pub struct Info {
+    /// The generator file [default: the one that is built in].
+    #[arg(value_name = "FILE.onnx")]
+    pub file: Option<PathBuf>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What to do where the arguments did not parse: help and version go to stdout, all else is a failure in one line.
+pub fn answer(e: &clap::Error) -> Result<(), Failure> {
+    match e.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            failure::print(&e.render().to_string())
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => Err(
+            Failure::new("no command: give drape, correct or info (taut --help tells more)"),
+        ),
+        _ => Err(Failure::new(short(&e.render().to_string()))),
+    }
+}
+
+/// The text of an argument error as one line: what is wrong and the tip, without the usage.
+fn short(text: &str) -> String {
+    let lines = text.lines().map(str::trim);
+    let telling = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more"));
+    let mut line = String::new();
+    for part in telling.filter(|l| !l.is_empty()) {
+        if part.starts_with("tip:") || part.starts_with('[') {
+            line.push_str("; ");
+        } else if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(part);
+    }
+    line.trim_start_matches("error: ").into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(line: &str) -> Result<Cli, String> {
+        let words = line.split(' ').map(|w| w.replace('_', " "));
+        Cli::try_parse_from(words).map_err(|e| match answer(&e) {
+            Err(Failure::User(text)) => text,
+            other => panic!("{line}: {other:?}"),
+        })
+    }
+
+    fn drape(line: &str) -> Drape {
+        match parse(line).expect(line).command {
+            Command::Drape(d) => d,
+            other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn defaults_are_those_of_a_game() {
+        let d = drape("taut drape heavy_blue_denim");
+        assert_eq!(d.cloth.description, "heavy blue denim");
+        assert_eq!(d.cloth.scene, Scene::Hang2);
+        assert_eq!((d.cloth.grid.rows, d.cloth.grid.columns), (32, 32));
+        assert_eq!((d.cloth.size.width_m, d.cloth.size.height_m), (1.0, 1.0));
+        assert_eq!((d.rate, d.substeps, d.seconds), (60.0, 16, 10.0));
+        assert_eq!((d.budget, d.density, d.cloth.seed), (Budget::Tuned, None, 0));
+        assert_eq!(d.out, PathBuf::from("out/drape"));
+        assert!(!d.json && d.cloth.model.is_none());
+    }
+
+    #[test]
+    fn every_option_arrives() {
+        let d = drape(
+            "taut drape silk --scene hang1 --grid 16x24 --size 1.5x2 --rate 30 --substeps 8 --budget certified \
+             --density 0.2 --seed 18446744073709551615 --seconds 1.5 --out a/b --json --model m.onnx",
+        );
+        assert_eq!((d.cloth.grid.rows, d.cloth.grid.columns), (16, 24));
+        assert_eq!((d.cloth.size.width_m, d.cloth.size.height_m), (1.5, 2.0));
+        assert_eq!((d.rate, d.substeps, d.seconds), (30.0, 8, 1.5));
+        assert_eq!((d.budget, d.density), (Budget::Certified, Some(0.2)));
+        assert_eq!((d.cloth.seed, d.cloth.scene), (u64::MAX, Scene::Hang1));
+        assert!(d.json && d.cloth.model == Some("m.onnx".into()));
+    }
+
+    #[test]
+    fn wrong_lines_are_answered_in_one_line_that_names_the_option() {
+        for (line, named) in [
+            ("taut", "no command"),
+            ("taut drape", "<DESCRIPTION>"),
+            ("taut nonsense", "nonsense"),
+            ("taut drape silk wool", "wool"),
+            ("taut drape silk --grid 1x1", "--grid"),
+            ("taut drape silk --grid -1x5", "--grid"),
+            ("taut drape silk --grid", "--grid"),
+            ("taut drape silk --girth 3", "--girth"),
+            ("taut drape silk --substeps 0", "--substeps"),
+            ("taut drape silk --rate 0", "--rate"),
+            ("taut drape silk --seconds -1", "--seconds"),
+            ("taut drape silk --seconds NaN", "--seconds"),
+            ("taut drape silk --density -0.1", "--density"),
+            ("taut drape silk --seed -1", "--seed"),
+            ("taut drape silk --seed 1.5", "--seed"),
+            ("taut drape silk --scene moon", "hang2, edge or hang1"),
+            ("taut drape silk --budget big", "tuned or certified"),
+            ("taut correct silk", "--out"),
+        ] {
+            let text = parse(line).err().unwrap_or_else(|| panic!("{line} parsed"));
+            assert!(text.contains(named), "{line}: {text}");
+            assert!(!text.contains('\n') && !text.contains("\\n") && !text.contains("Usage"), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,54 @@
+//! The picture of a comparison: one panel a setting.
+
+use taut_lab::compare::Outcome;
+use taut_lab::picture::{Grid, Panel, PictureError, Sheet, encode_png};
+use taut_lab::scene::Scene;
+
+use crate::colour;
+use crate::failure::{Failure, one_line};
+use crate::notes::{self, number};
+use crate::report::{Report, Setting};
+
+impl From<PictureError> for Failure {
+    fn from(e: PictureError) -> Failure {
+        Failure::new(e)
+    }
+}
+
+/// The picture as the bytes of a PNG file.
+pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8>, Failure> {
+    let [rows, columns] = report.grid.map(|n| n as usize);
+    let [width_m, height_m] = report.size_m;
+    let mut sheet = Sheet::new(one_line(&report.description))
+        .subtitle(notes::setup(report))
+        .style(colour::style(&report.description))
+        .footer(notes::notes(report).join(" "));
+    for (i, (outcome, setting)) in outcomes.iter().zip(&report.settings).enumerate() {
+        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?
+            .with_pins(&scene.pins(columns))?;
+        let mut panel = Panel::new(notes::heading(setting.name), grid);
+        for line in lines(setting, report.grid) {
+            panel = panel.line(line);
+        }
+        sheet = sheet.panel(panel);
+        if setting.name == "reference" {
+            sheet = sheet.outline_of(i);
+        }
+    }
+    Ok(encode_png(&sheet.render()?)?)
+}
+
+/// What stands above a cloth.
+fn lines(s: &Setting, grid: [u32; 2]) -> [String; 3] {
+    let stretch = s.stretch_pct;
+    let cut = match (notes::fills_the_budget(s.name), s.cut_fraction) {
+        (true, _) => "all the step can carry".into(),
+        (false, cut) if cut <= 0.0 => "nothing cut".into(),
+        (false, cut) => format!("{:.0} % of K cut", 100.0 * cut),
+    };
+    [
+        format!("max {} %  p99 {} %", number(stretch.max), number(stretch.p99)),
+        format!("away from pins {} %", number(stretch.ex_pin_max)),
+        format!("{cut}, {:.0} us/frame", notes::us_per_frame(s, grid)),
+    ]
+}

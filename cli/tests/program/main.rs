@@ -1,0 +1,8 @@
+//! The program as it is built, run as a user runs it.
+
+mod bad_input;
+mod correct;
+mod drape;
+mod info;
+mod interrupt;
+mod run;
