@@ -36,12 +36,7 @@ impl Fabric {
 
     /// How unlike two fabrics are: the squared differences of their grades, and 4 where only one of them is a knit.
     pub fn distance(&self, other: &Self) -> u32 {
-        let grades = self
-            .grades
-            .iter()
-            .zip(&other.grades)
-            .map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2))
-            .sum::<u32>();
+        let grades = self.grades.iter().zip(&other.grades).map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2)).sum::<u32>();
         let knit = |fabric: &Self| fabric.construction.contains(&"knit");
         grades + if knit(self) == knit(other) { 0 } else { 4 }
     }
@@ -49,8 +44,7 @@ impl Fabric {
 
 /// The catalogue, in the order of its file.
 pub fn fabrics() -> &'static [Fabric] {
-    static FABRICS: LazyLock<Vec<Fabric>> =
-        LazyLock::new(|| TEXT.lines().filter_map(parse).collect());
+    static FABRICS: LazyLock<Vec<Fabric>> = LazyLock::new(|| TEXT.lines().filter_map(parse).collect());
     &FABRICS
 }
 
@@ -65,10 +59,7 @@ fn parse(line: &'static str) -> Option<Fabric> {
     };
     let list = |field: &'static str| field.split_whitespace().collect::<Vec<_>>();
     let common = names.starts_with('*');
-    let grades: Vec<u8> = grades
-        .split_whitespace()
-        .filter_map(|grade| grade.parse().ok())
-        .collect();
+    let grades: Vec<u8> = grades.split_whitespace().filter_map(|grade| grade.parse().ok()).collect();
     Some(Fabric {
         common,
         names: list(names.trim_start_matches('*')),
@@ -91,23 +82,12 @@ mod tests {
         assert_eq!(fabrics().len(), lines);
         assert!(lines >= 200);
         for fabric in fabrics() {
-            assert!(
-                fabric.grades.iter().all(|grade| (1..=5).contains(grade)),
-                "{fabric:?}"
-            );
-            for field in [
-                &fabric.names,
-                &fabric.fibres,
-                &fabric.construction,
-                &fabric.hand,
-                &fabric.uses,
-                &fabric.colours,
-            ] {
+            assert!(fabric.grades.iter().all(|grade| (1..=5).contains(grade)), "{fabric:?}");
+            for field in
+                [&fabric.names, &fabric.fibres, &fabric.construction, &fabric.hand, &fabric.uses, &fabric.colours]
+            {
                 assert!(!field.is_empty(), "{fabric:?}");
-                let plain = |word: &str| {
-                    word.bytes()
-                        .all(|b| b.is_ascii_lowercase() || b"_-0123456789".contains(&b))
-                };
+                let plain = |word: &str| word.bytes().all(|b| b.is_ascii_lowercase() || b"_-0123456789".contains(&b));
                 assert!(field.iter().all(|word| plain(word)), "{fabric:?}");
             }
         }
@@ -115,12 +95,7 @@ mod tests {
 
     #[test]
     fn denim_is_heavy_and_chiffon_light() {
-        let of = |name: &str| {
-            fabrics()
-                .iter()
-                .find(|fabric| fabric.names[0] == name)
-                .expect(name)
-        };
+        let of = |name: &str| fabrics().iter().find(|fabric| fabric.names[0] == name).expect(name);
         assert!(of("denim").grade(Quality::Weight) > of("chiffon").grade(Quality::Weight));
         assert!(of("jersey").grade(Quality::Stretch) > of("canvas").grade(Quality::Stretch));
         assert!(of("denim").distance(of("canvas")) < of("denim").distance(of("silk")));

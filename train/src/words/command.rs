@@ -66,17 +66,7 @@ pub fn run(command: &WordsCommand) -> Result<(), WordsError> {
                 None => WordTable::committed()?,
             };
             let named: Vec<&str> = args.words.iter().map(String::as_str).collect();
-            print!(
-                "{}",
-                markdown(
-                    &table,
-                    if named.is_empty() {
-                        &FABRIC_WORDS
-                    } else {
-                        &named
-                    }
-                )?
-            );
+            print!("{}", markdown(&table, if named.is_empty() { &FABRIC_WORDS } else { &named })?);
             Ok(())
         }
     }
@@ -93,31 +83,19 @@ fn train(args: &TrainArgs) -> Result<(), WordsError> {
         ..WordsConfig::default()
     };
     let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template(
-        "words {bar:40} {percent}% {elapsed_precise} left {eta_precise}",
-    ) {
+    if let Ok(style) = ProgressStyle::with_template("words {bar:40} {percent}% {elapsed_precise} left {eta_precise}") {
         bar.set_style(style);
     }
-    let table = train_words(&args.corpus, &config, &mut |fraction| {
-        bar.set_position((fraction * 1000.0) as u64)
-    })?;
+    let table = train_words(&args.corpus, &config, &mut |fraction| bar.set_position((fraction * 1000.0) as u64))?;
     bar.finish();
     table.save(&args.out, &origin(args, &config))?;
-    println!(
-        "{} words of {} dimensions written to {}",
-        table.tokens.len() - 1,
-        table.dimensions(),
-        args.out.display()
-    );
+    println!("{} words of {} dimensions written to {}", table.tokens.len() - 1, table.dimensions(), args.out.display());
     Ok(())
 }
 
 /// The line that tells how a table was made; of the corpus only the last name, so that no machine's paths are kept.
 fn origin(args: &TrainArgs, config: &WordsConfig) -> String {
-    let corpus = args
-        .corpus
-        .file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let corpus = args.corpus.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     format!(
         "corpus {corpus}; seed {} window {} negatives {} epochs {} rate {} subsample {} contexts {} sentences {} repeat {}",
         config.seed,

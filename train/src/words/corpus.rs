@@ -29,12 +29,8 @@ impl Corpus {
     pub fn read(path: &Path) -> Result<Self, WordsError> {
         let mut corpus = Self::default();
         for file in files(path)? {
-            let bytes = std::fs::read(&file).map_err(|source| WordsError::Io {
-                path: file.clone(),
-                source,
-            })?;
-            let text =
-                String::from_utf8(bytes).map_err(|_| WordsError::NotText { path: file.clone() })?;
+            let bytes = std::fs::read(&file).map_err(|source| WordsError::Io { path: file.clone(), source })?;
+            let text = String::from_utf8(bytes).map_err(|_| WordsError::NotText { path: file.clone() })?;
             if is_wordnet(&text) {
                 corpus.add_wordnet(&text);
             } else {
@@ -42,9 +38,7 @@ impl Corpus {
             }
         }
         if corpus.ends.is_empty() {
-            return Err(WordsError::EmptyCorpus {
-                path: path.to_owned(),
-            });
+            return Err(WordsError::EmptyCorpus { path: path.to_owned() });
         }
         Ok(corpus)
     }
@@ -114,9 +108,7 @@ impl Corpus {
     /// The sentences, each a list of indices into [`Corpus::words`].
     pub fn sentences(&self) -> impl Iterator<Item = &[u32]> {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
-        starts
-            .zip(&self.ends)
-            .map(|(start, end)| &self.tokens[start..*end])
+        starts.zip(&self.ends).map(|(start, end)| &self.tokens[start..*end])
     }
 
     /// How many sentences there are.
@@ -132,10 +124,7 @@ impl Corpus {
 
 /// The files to read at a path, sorted.
 fn files(path: &Path) -> Result<Vec<PathBuf>, WordsError> {
-    let io = |source| WordsError::Io {
-        path: path.to_owned(),
-        source,
-    };
+    let io = |source| WordsError::Io { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -147,33 +136,20 @@ fn files(path: &Path) -> Result<Vec<PathBuf>, WordsError> {
         }
     }
     all.sort();
-    let named = |file: &PathBuf, wanted: &dyn Fn(&str) -> bool| {
-        file.file_name()
-            .and_then(|n| n.to_str())
-            .is_some_and(wanted)
-    };
+    let named =
+        |file: &PathBuf, wanted: &dyn Fn(&str) -> bool| file.file_name().and_then(|n| n.to_str()).is_some_and(wanted);
     let data = ["data.adj", "data.adv", "data.noun", "data.verb"];
-    let wordnet: Vec<PathBuf> = all
-        .iter()
-        .filter(|file| named(file, &|name| data.contains(&name)))
-        .cloned()
-        .collect();
+    let wordnet: Vec<PathBuf> = all.iter().filter(|file| named(file, &|name| data.contains(&name))).cloned().collect();
     if !wordnet.is_empty() {
         return Ok(wordnet);
     }
-    all.retain(|file| {
-        named(file, &|name| {
-            name.ends_with(".txt") || name.ends_with(".md")
-        })
-    });
+    all.retain(|file| named(file, &|name| name.ends_with(".txt") || name.ends_with(".md")));
     Ok(all)
 }
 
 /// Whether a text looks like a WordNet data file: its first line that is not licence is a synset.
 fn is_wordnet(text: &str) -> bool {
-    text.lines()
-        .find(|line| !line.starts_with("  "))
-        .is_some_and(|line| synset(line).is_some())
+    text.lines().find(|line| !line.starts_with("  ")).is_some_and(|line| synset(line).is_some())
 }
 
 /// The words and the gloss of a line `offset lex_filenum ss_type w_cnt word lex_id [word lex_id...] ... | gloss`.
@@ -226,8 +202,7 @@ fn split_sentences(paragraph: &str) -> Vec<&str> {
             all.push(&paragraph[start..at]);
             start = at;
         }
-        ended = matches!(c, '.' | '!' | '?' | ';')
-            || (ended && matches!(c, '"' | '\'' | ')' | '\u{201d}'));
+        ended = matches!(c, '.' | '!' | '?' | ';') || (ended && matches!(c, '"' | '\'' | ')' | '\u{201d}'));
     }
     all.push(&paragraph[start..]);
     all
@@ -243,12 +218,7 @@ mod tests {
 
     fn sentences(corpus: &Corpus) -> Vec<String> {
         let words = corpus.words();
-        let join = |s: &[u32]| {
-            s.iter()
-                .map(|id| words[*id as usize].as_str())
-                .collect::<Vec<_>>()
-                .join(" ")
-        };
+        let join = |s: &[u32]| s.iter().map(|id| words[*id as usize].as_str()).collect::<Vec<_>>().join(" ");
         corpus.sentences().map(join).collect()
     }
 
@@ -257,11 +227,8 @@ mod tests {
         assert!(is_wordnet(SYNSETS));
         let mut corpus = Corpus::default();
         corpus.add_wordnet(SYNSETS);
-        let expected = [
-            "denim dungaree blue jean a coarse twill-weave fabric",
-            "she wore denim",
-            "afloat borne on the water",
-        ];
+        let expected =
+            ["denim dungaree blue jean a coarse twill-weave fabric", "she wore denim", "afloat borne on the water"];
         assert_eq!(sentences(&corpus), expected);
         assert_eq!(corpus.token_count(), 16);
     }
@@ -269,17 +236,10 @@ mod tests {
     #[test]
     fn plain_text_is_split_into_sentences() {
         let mut corpus = Corpus::default();
-        let text =
-            "Silk is light. It weighs 3.5 g; \"So soft!\" she said\nand wore it.\n\nEnd\n\nof text";
+        let text = "Silk is light. It weighs 3.5 g; \"So soft!\" she said\nand wore it.\n\nEnd\n\nof text";
         assert!(!is_wordnet(text));
         corpus.add_text(text);
-        let expected = [
-            "silk is light",
-            "it weighs 3 5 g",
-            "so soft",
-            "she said and wore it",
-            "of text",
-        ];
+        let expected = ["silk is light", "it weighs 3 5 g", "so soft", "she said and wore it", "of text"];
         assert_eq!(sentences(&corpus), expected);
     }
 
@@ -287,27 +247,14 @@ mod tests {
     fn folders_are_read_in_order_and_errors_name_the_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path();
-        assert!(matches!(
-            Corpus::read(path),
-            Err(WordsError::EmptyCorpus { .. })
-        ));
+        assert!(matches!(Corpus::read(path), Err(WordsError::EmptyCorpus { .. })));
         std::fs::write(path.join("b.txt"), "second file").expect("written");
         std::fs::write(path.join("a.md"), "first file").expect("written");
         std::fs::write(path.join("c.bin"), [255, 254]).expect("written");
-        assert_eq!(
-            sentences(&Corpus::read(path).expect("read")),
-            ["first file", "second file"]
-        );
-        let error = Corpus::read(&path.join("c.bin"))
-            .expect_err("not text")
-            .to_string();
-        assert!(
-            error.contains("c.bin") && error.contains("UTF-8"),
-            "{error}"
-        );
-        let error = Corpus::read(&path.join("none"))
-            .expect_err("absent")
-            .to_string();
+        assert_eq!(sentences(&Corpus::read(path).expect("read")), ["first file", "second file"]);
+        let error = Corpus::read(&path.join("c.bin")).expect_err("not text").to_string();
+        assert!(error.contains("c.bin") && error.contains("UTF-8"), "{error}");
+        let error = Corpus::read(&path.join("none")).expect_err("absent").to_string();
         assert!(error.contains("none"), "{error}");
         std::fs::write(path.join("data.noun"), SYNSETS).expect("written");
         assert_eq!(Corpus::read(path).expect("read").sentence_count(), 3);

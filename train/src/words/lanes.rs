@@ -6,12 +6,7 @@ pub(super) const LANES: usize = 16;
 /// The dot product of two vectors of one length, a multiple of [`LANES`] (a rest would be left out).
 pub(super) fn dot(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0f32; LANES];
-    for (x, y) in a
-        .as_chunks::<LANES>()
-        .0
-        .iter()
-        .zip(b.as_chunks::<LANES>().0)
-    {
+    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
         for lane in 0..LANES {
             sums[lane] += x[lane] * y[lane];
         }
@@ -29,9 +24,7 @@ pub(super) fn dot(a: &[f32], b: &[f32]) -> f32 {
 /// `gradient += scale * output` and then `output += scale * input`: one target of one pair, both ways at once.
 pub(super) fn exchange(scale: f32, input: &[f32], output: &mut [f32], gradient: &mut [f32]) {
     let chunks = input.as_chunks::<LANES>().0.iter();
-    let chunks = chunks
-        .zip(output.as_chunks_mut::<LANES>().0)
-        .zip(gradient.as_chunks_mut::<LANES>().0);
+    let chunks = chunks.zip(output.as_chunks_mut::<LANES>().0).zip(gradient.as_chunks_mut::<LANES>().0);
     for ((x, y), g) in chunks {
         for lane in 0..LANES {
             g[lane] += scale * y[lane];
@@ -49,11 +42,7 @@ pub(super) fn add(to: &mut [f32], from: &[f32]) {
 
 /// Scales a vector to length 1; a zero vector stays as it is.
 pub(super) fn normalise(vector: &mut [f32]) {
-    let length = vector
-        .iter()
-        .map(|x| f64::from(*x) * f64::from(*x))
-        .sum::<f64>()
-        .sqrt();
+    let length = vector.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
     if length > 0.0 {
         for x in vector {
             *x = (f64::from(*x) / length) as f32;

@@ -86,9 +86,7 @@ impl WordsConfig {
             if (low..=high).contains(&value) {
                 Ok(())
             } else {
-                Err(WordsError::Config(format!(
-                    "{name} is {value}, but must be {low} to {high}"
-                )))
+                Err(WordsError::Config(format!("{name} is {value}, but must be {low} to {high}")))
             }
         };
         within("dimensions", self.dimensions, 16, 4096)?;
@@ -103,12 +101,7 @@ impl WordsConfig {
         within("negatives", self.negatives, 1, 64)?;
         within("epochs", self.epochs, 1, 1000)?;
         within("vocabulary", self.vocabulary, 2, 65_536)?;
-        within(
-            "context_vocabulary",
-            self.context_vocabulary,
-            self.vocabulary,
-            1_000_000,
-        )?;
+        within("context_vocabulary", self.context_vocabulary, self.vocabulary, 1_000_000)?;
         within("fabric_sentences", self.fabric_sentences, 0, 10_000_000)?;
         within("textile_repeat", self.textile_repeat, 1, 100)?;
         if !(self.learning_rate > 0.0 && self.learning_rate <= 1.0) {
@@ -169,10 +162,7 @@ impl fmt::Display for WordsError {
             ),
             Self::Config(what) => write!(out, "word training: {what}"),
             Self::Table(what) => write!(out, "word table: {what}"),
-            Self::Diverged => write!(
-                out,
-                "word training: the vectors are no longer finite; lower the learning rate"
-            ),
+            Self::Diverged => write!(out, "word training: the vectors are no longer finite; lower the learning rate"),
             Self::Unknown(word) => write!(out, "the word table does not know '{word}'"),
         }
     }
@@ -202,12 +192,7 @@ pub fn train_words(
     config.check()?;
     let text = corpus::Corpus::read(corpus)?;
     let fabrics = sentences::fabric_sentences(config.fabric_sentences, config.seed);
-    let chosen = vocabulary::Vocabulary::choose(
-        &text,
-        &fabrics,
-        config.vocabulary,
-        config.context_vocabulary,
-    );
+    let chosen = vocabulary::Vocabulary::choose(&text, &fabrics, config.vocabulary, config.context_vocabulary);
     let stream = vocabulary::encode(&text, &fabrics, &chosen, config.textile_repeat);
     skipgram::train(&chosen, &stream, config, progress)
 }

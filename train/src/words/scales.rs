@@ -23,159 +23,69 @@ pub enum Quality {
 }
 
 /// All qualities, in the order of a catalogue line.
-pub const QUALITIES: [Quality; 4] = [
-    Quality::Weight,
-    Quality::Thickness,
-    Quality::Stiffness,
-    Quality::Stretch,
-];
+pub const QUALITIES: [Quality; 4] = [Quality::Weight, Quality::Thickness, Quality::Stiffness, Quality::Stretch];
 
 impl Quality {
     /// The words for a grade from 1 (least) to 5 (most); any other grade has none. Frequent words stand twice.
     pub fn words(self, grade: u8) -> &'static [&'static str] {
         match (self, grade) {
-            (Self::Weight, 1) => &[
-                "light",
-                "light",
-                "lightweight",
-                "featherlight",
-                "weightless",
-                "ultralight",
-                "airy",
-            ],
+            (Self::Weight, 1) => &["light", "light", "lightweight", "featherlight", "weightless", "ultralight", "airy"],
             (Self::Weight, 2) => &["light", "light", "lightweight", "lightish"],
             (Self::Weight, 3) => &["medium", "midweight", "medium-weight", "moderate"],
             (Self::Weight, 4) => &["heavy", "heavy", "heavyweight", "weighty", "substantial"],
-            (Self::Weight, 5) => &[
-                "heavy",
-                "heavy",
-                "heavyweight",
-                "weighty",
-                "hefty",
-                "massive",
-            ],
+            (Self::Weight, 5) => &["heavy", "heavy", "heavyweight", "weighty", "hefty", "massive"],
             (Self::Thickness, 1) => &["thin", "thin", "fine", "wispy", "filmy", "flimsy"],
             (Self::Thickness, 2) => &["thin", "thin", "fine", "slim"],
             (Self::Thickness, 3) => &["medium", "moderate", "average"],
             (Self::Thickness, 4) => &["thick", "thick", "dense", "substantial"],
             (Self::Thickness, 5) => &["thick", "thick", "bulky", "chunky", "voluminous"],
-            (Self::Stiffness, 1) => &[
-                "soft", "limp", "supple", "fluid", "drapey", "flowing", "floppy", "flexible",
-                "slouchy",
-            ],
-            (Self::Stiffness, 2) => &[
-                "soft", "supple", "pliable", "pliant", "flexible", "yielding",
-            ],
+            (Self::Stiffness, 1) => {
+                &["soft", "limp", "supple", "fluid", "drapey", "flowing", "floppy", "flexible", "slouchy"]
+            }
+            (Self::Stiffness, 2) => &["soft", "supple", "pliable", "pliant", "flexible", "yielding"],
             (Self::Stiffness, 3) => &["medium", "moderate"],
             (Self::Stiffness, 4) => &["stiff", "firm", "structured", "stiffish", "solid"],
-            (Self::Stiffness, 5) => &[
-                "stiff",
-                "stiff",
-                "rigid",
-                "inflexible",
-                "boardy",
-                "structured",
-                "hard",
-                "unbending",
-            ],
-            (Self::Stretch, 1) => &[
-                "inelastic",
-                "non-stretch",
-                "inextensible",
-                "stable",
-                "stretchless",
-                "unstretchable",
-            ],
+            (Self::Stiffness, 5) => {
+                &["stiff", "stiff", "rigid", "inflexible", "boardy", "structured", "hard", "unbending"]
+            }
+            (Self::Stretch, 1) => {
+                &["inelastic", "non-stretch", "inextensible", "stable", "stretchless", "unstretchable"]
+            }
             (Self::Stretch, 3) => &["stretch", "give", "stretchable"],
-            (Self::Stretch, 4) => &[
-                "stretchy",
-                "stretchy",
-                "stretch",
-                "elastic",
-                "extensible",
-                "stretchable",
-            ],
-            (Self::Stretch, 5) => &[
-                "stretchy",
-                "stretchy",
-                "elastic",
-                "elasticated",
-                "springy",
-                "stretch",
-                "clingy",
-            ],
+            (Self::Stretch, 4) => &["stretchy", "stretchy", "stretch", "elastic", "extensible", "stretchable"],
+            (Self::Stretch, 5) => &["stretchy", "stretchy", "elastic", "elasticated", "springy", "stretch", "clingy"],
             _ => &[],
         }
     }
 
     /// The words of one end of the scale, 0 the low one and 1 the high one: sentences that gather synonyms use them.
     pub fn end(self, high: bool) -> [&'static [&'static str]; 2] {
-        if high {
-            [self.words(4), self.words(5)]
-        } else {
-            [self.words(1), self.words(2)]
-        }
+        if high { [self.words(4), self.words(5)] } else { [self.words(1), self.words(2)] }
     }
 
     /// Words that speak of the quality itself, at one end of its scale.
     pub fn meaning(self, high: bool) -> &'static [&'static str] {
         match (self, high) {
-            (Self::Weight, false) => &[
-                "weighs little",
-                "low weight",
-                "few grams",
-                "floats",
-                "for summer",
-                "easy to carry",
-            ],
-            (Self::Weight, true) => &[
-                "weighs much",
-                "great weight",
-                "many grams",
-                "hangs down",
-                "for winter",
-                "many ounces",
-            ],
-            (Self::Thickness, false) => &[
-                "little thickness",
-                "of fine yarn",
-                "lets light through",
-                "a single layer",
-            ],
-            (Self::Thickness, true) => &[
-                "great thickness",
-                "of thick yarn",
-                "keeps warm",
-                "several layers",
-                "much loft",
-            ],
-            (Self::Stiffness, false) => &[
-                "bends easily",
-                "drapes in soft folds",
-                "clings to the body",
-                "low rigidity",
-                "flows",
-            ],
-            (Self::Stiffness, true) => &[
-                "resists bending",
-                "holds its shape",
-                "stands away from the body",
-                "high rigidity",
-                "starched",
-            ],
-            (Self::Stretch, false) => &[
-                "does not give",
-                "keeps its length",
-                "no stretch",
-                "low extension",
-            ],
-            (Self::Stretch, true) => &[
-                "gives and recovers",
-                "extends far",
-                "great stretch",
-                "follows the body",
-                "high extension",
-            ],
+            (Self::Weight, false) => {
+                &["weighs little", "low weight", "few grams", "floats", "for summer", "easy to carry"]
+            }
+            (Self::Weight, true) => {
+                &["weighs much", "great weight", "many grams", "hangs down", "for winter", "many ounces"]
+            }
+            (Self::Thickness, false) => &["little thickness", "of fine yarn", "lets light through", "a single layer"],
+            (Self::Thickness, true) => {
+                &["great thickness", "of thick yarn", "keeps warm", "several layers", "much loft"]
+            }
+            (Self::Stiffness, false) => {
+                &["bends easily", "drapes in soft folds", "clings to the body", "low rigidity", "flows"]
+            }
+            (Self::Stiffness, true) => {
+                &["resists bending", "holds its shape", "stands away from the body", "high rigidity", "starched"]
+            }
+            (Self::Stretch, false) => &["does not give", "keeps its length", "no stretch", "low extension"],
+            (Self::Stretch, true) => {
+                &["gives and recovers", "extends far", "great stretch", "follows the body", "high extension"]
+            }
         }
     }
 }
@@ -183,22 +93,9 @@ impl Quality {
 /// How a fabric of a stiffness grade falls: the words of its folds.
 pub fn folds(stiffness: u8) -> &'static [&'static str] {
     match stiffness {
-        0..=2 => &[
-            "soft folds",
-            "deep folds",
-            "many small folds",
-            "flowing folds",
-            "gentle ripples",
-            "liquid drape",
-        ],
+        0..=2 => &["soft folds", "deep folds", "many small folds", "flowing folds", "gentle ripples", "liquid drape"],
         3 => &["even folds", "rounded folds", "moderate folds"],
-        _ => &[
-            "few large folds",
-            "sharp creases",
-            "angular folds",
-            "wide stiff folds",
-            "hardly any folds",
-        ],
+        _ => &["few large folds", "sharp creases", "angular folds", "wide stiff folds", "hardly any folds"],
     }
 }
 

@@ -5,9 +5,7 @@
 
 use super::catalogue::{Fabric, fabrics};
 use super::random::Random;
-use super::scales::{
-    COLOURS, CRAFT, EVERYDAY, PATTERNS, QUALITIES, Quality, SHADES, THINGS, folds,
-};
+use super::scales::{COLOURS, CRAFT, EVERYDAY, PATTERNS, QUALITIES, Quality, SHADES, THINGS, folds};
 use super::tokens::tokenize;
 
 /// Forms of a sentence about one fabric. A word in braces is filled in, or left out where the fabric has none.
@@ -51,9 +49,8 @@ pub fn fabric_sentences(count: usize, seed: u64) -> Vec<Vec<String>> {
     let mut random = Random::new(seed, 1);
     let all = fabrics();
     // Common fabrics are drawn three times as often.
-    let draw: Vec<usize> = (0..all.len())
-        .flat_map(|index| std::iter::repeat_n(index, if all[index].common { 3 } else { 1 }))
-        .collect();
+    let draw: Vec<usize> =
+        (0..all.len()).flat_map(|index| std::iter::repeat_n(index, if all[index].common { 3 } else { 1 })).collect();
     let peers: Vec<Vec<usize>> = (0..all.len()).map(|index| peers_of(all, index)).collect();
     (0..count)
         .map(|_| {
@@ -97,25 +94,14 @@ fn about_fabric(random: &mut Random, fabric: &Fabric, peers: &[usize]) -> String
             "{fibre}" => one(random, &fabric.fibres),
             "{construction}" => one(random, &fabric.construction),
             "{weight}" => one(random, Quality::Weight.words(fabric.grade(Quality::Weight))),
-            "{thickness}" => one(
-                random,
-                Quality::Thickness.words(fabric.grade(Quality::Thickness)),
-            ),
-            "{stiffness}" => one(
-                random,
-                Quality::Stiffness.words(fabric.grade(Quality::Stiffness)),
-            ),
-            "{stretch}" => one(
-                random,
-                Quality::Stretch.words(fabric.grade(Quality::Stretch)),
-            ),
+            "{thickness}" => one(random, Quality::Thickness.words(fabric.grade(Quality::Thickness))),
+            "{stiffness}" => one(random, Quality::Stiffness.words(fabric.grade(Quality::Stiffness))),
+            "{stretch}" => one(random, Quality::Stretch.words(fabric.grade(Quality::Stretch))),
             "{degree}" => one(random, degrees(fabric.grade(Quality::Weight))),
             "{hand}" => one(random, &fabric.hand),
             "{use}" => one(random, &fabric.uses),
             "{folds}" => one(random, folds(fabric.grade(Quality::Stiffness))),
-            "{peer}" => peers
-                .get(random.below(peers.len()))
-                .map_or("", |peer| fabrics()[*peer].names[0]),
+            "{peer}" => peers.get(random.below(peers.len())).map_or("", |peer| fabrics()[*peer].names[0]),
             // Half the time its usual colour, else any.
             "{colour}" if random.below(2) == 0 => one(random, &fabric.colours),
             "{colour}" => one(random, &COLOURS),
@@ -173,11 +159,7 @@ fn about_colour(random: &mut Random) -> String {
     match random.below(4) {
         0 => format!("{shade} {first} and {second} {pattern} {thing}"),
         1 => format!("{pattern} {shade} {first} {thing}"),
-        2 => format!(
-            "colours {first} {second} {} {}",
-            one(random, &COLOURS),
-            one(random, &COLOURS)
-        ),
+        2 => format!("colours {first} {second} {} {}", one(random, &COLOURS), one(random, &COLOURS)),
         _ => format!("a {thing} in {shade} {first} with {second} {pattern}"),
     }
 }
@@ -188,10 +170,7 @@ fn everyday(random: &mut Random) -> String {
     let (first, second) = (one(random, &EVERYDAY), one(random, &EVERYDAY));
     match random.below(3) {
         0 => format!("a {first} {second} {thing}"),
-        1 => format!(
-            "{first} {thing} for {second} {}",
-            plural(one(random, &THINGS)).replace('_', " ")
-        ),
+        1 => format!("{first} {thing} for {second} {}", plural(one(random, &THINGS)).replace('_', " ")),
         _ => format!("{first} {} {second} {thing}", one(random, &COLOURS)),
     }
 }
@@ -202,20 +181,10 @@ fn plural(word: &str) -> String {
     if let Some(stem) = word.strip_suffix("rf") {
         return format!("{stem}rves");
     }
-    if let Some(stem) = word
-        .strip_suffix('y')
-        .filter(|stem| !stem.ends_with(['a', 'e', 'o', 'u']))
-    {
+    if let Some(stem) = word.strip_suffix('y').filter(|stem| !stem.ends_with(['a', 'e', 'o', 'u'])) {
         return format!("{stem}ies");
     }
-    if ["ss", "sh", "ch", "x"]
-        .iter()
-        .any(|end| word.ends_with(end))
-    {
-        format!("{word}es")
-    } else {
-        word.to_owned()
-    }
+    if ["ss", "sh", "ch", "x"].iter().any(|end| word.ends_with(end)) { format!("{word}es") } else { word.to_owned() }
 }
 
 #[cfg(test)]
@@ -230,12 +199,7 @@ mod tests {
         assert!(first.len() > 490);
         assert_eq!(first, fabric_sentences(500, 3));
         assert_ne!(first, fabric_sentences(500, 4));
-        assert!(
-            first
-                .iter()
-                .flatten()
-                .all(|word| tokenize(word) == [word.clone()])
-        );
+        assert!(first.iter().flatten().all(|word| tokenize(word) == [word.clone()]));
     }
 
     #[test]
@@ -259,30 +223,16 @@ mod tests {
                 && sentence.iter().any(|w| wrong.contains(&w.as_str()))
         };
         for sentence in fabric_sentences(20_000, 2) {
-            assert!(
-                !opposite(&sentence, "chiffon", &["heavy", "thick", "stiff"]),
-                "{sentence:?}"
-            );
-            assert!(
-                !opposite(
-                    &sentence,
-                    "duck",
-                    &["lightweight", "thin", "limp", "stretchy"]
-                ),
-                "{sentence:?}"
-            );
+            assert!(!opposite(&sentence, "chiffon", &["heavy", "thick", "stiff"]), "{sentence:?}");
+            assert!(!opposite(&sentence, "duck", &["lightweight", "thin", "limp", "stretchy"]), "{sentence:?}");
         }
     }
 
     #[test]
     fn plurals() {
-        for (word, many) in [
-            ("dress", "dresses"),
-            ("scarf", "scarves"),
-            ("jeans", "jeans"),
-            ("sash", "sashes"),
-            ("hat", "hat"),
-        ] {
+        for (word, many) in
+            [("dress", "dresses"), ("scarf", "scarves"), ("jeans", "jeans"), ("sash", "sashes"), ("hat", "hat")]
+        {
             assert_eq!(plural(word), many);
         }
     }

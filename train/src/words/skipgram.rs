@@ -50,11 +50,7 @@ pub fn train(
     for _ in 0..config.epochs {
         random.shuffle(&mut order);
         for index in &order {
-            let start = if *index == 0 {
-                0
-            } else {
-                stream.ends[*index - 1]
-            };
+            let start = if *index == 0 { 0 } else { stream.ends[*index - 1] };
             sentence.clear();
             for id in &stream.ids[start..stream.ends[*index]] {
                 if random.unit() < keep[*id as usize] {
@@ -88,21 +84,14 @@ fn keep_probabilities(counts: &[u64], threshold: f64) -> Vec<f32> {
         .iter()
         .map(|count| {
             let ratio = threshold / (*count as f64 / total);
-            if ratio.is_finite() {
-                (ratio.sqrt() + ratio).min(1.0) as f32
-            } else {
-                1.0
-            }
+            if ratio.is_finite() { (ratio.sqrt() + ratio).min(1.0) as f32 } else { 1.0 }
         })
         .collect()
 }
 
 /// A table in which each word stands in proportion to its count to the power 3/4.
 fn noise_table(counts: &[u64]) -> Vec<u32> {
-    let powers: Vec<f64> = counts
-        .iter()
-        .map(|count| (*count as f64).powf(0.75))
-        .collect();
+    let powers: Vec<f64> = counts.iter().map(|count| (*count as f64).powf(0.75)).collect();
     let total: f64 = powers.iter().sum();
     let mut table = Vec::with_capacity(NOISE_SLOTS);
     let mut upto = 0.0;
@@ -132,13 +121,10 @@ impl Model {
     fn new(vocabulary: &Vocabulary, config: &WordsConfig) -> Self {
         let dimensions = config.dimensions;
         let mut random = Random::new(config.seed, 3);
-        let centres = (0..vocabulary.rows() * dimensions)
-            .map(|_| (random.unit() - 0.5) / dimensions as f32)
-            .collect();
+        let centres = (0..vocabulary.rows() * dimensions).map(|_| (random.unit() - 0.5) / dimensions as f32).collect();
         let logistic = (0..LOGISTIC_SLOTS)
             .map(|slot| {
-                let x = (slot as f64 + 0.5) / LOGISTIC_SLOTS as f64 * 2.0 * f64::from(REACH)
-                    - f64::from(REACH);
+                let x = (slot as f64 + 0.5) / LOGISTIC_SLOTS as f64 * 2.0 * f64::from(REACH) - f64::from(REACH);
                 (1.0 / (1.0 + (-x).exp())) as f32
             })
             .collect();
@@ -153,14 +139,7 @@ impl Model {
     }
 
     /// All pairs of a sentence. Words that are only context have no vector and are no centres.
-    fn sentence(
-        &mut self,
-        ids: &[usize],
-        rate: f32,
-        config: &WordsConfig,
-        noise: &[u32],
-        random: &mut Random,
-    ) {
+    fn sentence(&mut self, ids: &[usize], rate: f32, config: &WordsConfig, noise: &[u32], random: &mut Random) {
         for (at, centre) in ids.iter().enumerate() {
             let reach = 1 + random.below(config.window);
             if *centre >= self.rows {
@@ -177,15 +156,7 @@ impl Model {
     }
 
     /// One pair and its noise words.
-    fn pair(
-        &mut self,
-        centre: usize,
-        context: usize,
-        rate: f32,
-        negatives: usize,
-        noise: &[u32],
-        random: &mut Random,
-    ) {
+    fn pair(&mut self, centre: usize, context: usize, rate: f32, negatives: usize, noise: &[u32], random: &mut Random) {
         self.gradient.fill(0.0);
         let width = self.dimensions;
         let input = &mut self.centres[centre * width..(centre + 1) * width];
@@ -201,8 +172,8 @@ impl Model {
             };
             let output = &mut self.contexts[target * width..(target + 1) * width];
             let score = dot(input, output);
-            let slot = ((score + REACH) * (LOGISTIC_SLOTS as f32 / (2.0 * REACH)))
-                .clamp(0.0, (LOGISTIC_SLOTS - 1) as f32);
+            let slot =
+                ((score + REACH) * (LOGISTIC_SLOTS as f32 / (2.0 * REACH))).clamp(0.0, (LOGISTIC_SLOTS - 1) as f32);
             let step = rate * (label - self.logistic[slot as usize]);
             exchange(step, input, output, &mut self.gradient);
         }
@@ -232,10 +203,7 @@ impl Model {
             }
             normalise(row);
         }
-        Ok(WordTable {
-            tokens: vocabulary.tokens().to_vec(),
-            vectors: self.centres,
-        })
+        Ok(WordTable { tokens: vocabulary.tokens().to_vec(), vectors: self.centres })
     }
 }
 
@@ -260,16 +228,14 @@ mod tests {
     fn trained(config: &WordsConfig) -> (WordTable, Vec<f32>) {
         let mut corpus = Corpus::default();
         for _ in 0..40 {
-            corpus.add_text("heavy thick denim coat. thick heavy canvas coat. light thin silk scarf. thin light chiffon scarf.");
+            corpus.add_text(
+                "heavy thick denim coat. thick heavy canvas coat. light thin silk scarf. thin light chiffon scarf.",
+            );
         }
-        let vocabulary =
-            Vocabulary::choose(&corpus, &[], config.vocabulary, config.context_vocabulary);
+        let vocabulary = Vocabulary::choose(&corpus, &[], config.vocabulary, config.context_vocabulary);
         let stream = encode(&corpus, &[], &vocabulary, 1);
         let mut heard = Vec::new();
-        let table = train(&vocabulary, &stream, config, &mut |fraction| {
-            heard.push(fraction)
-        })
-        .expect("trained");
+        let table = train(&vocabulary, &stream, config, &mut |fraction| heard.push(fraction)).expect("trained");
         (table, heard)
     }
 
@@ -297,8 +263,7 @@ mod tests {
         let keep = keep_probabilities(&[9_900, 99, 1, 0], 1e-3);
         assert!(keep[0] < 0.04 && keep[1] < 0.5 && keep[2] == 1.0 && keep[3] == 1.0);
         let table = noise_table(&[0, 16, 1]);
-        let share =
-            |id: u32| table.iter().filter(|x| **x == id).count() as f64 / table.len() as f64;
+        let share = |id: u32| table.iter().filter(|x| **x == id).count() as f64 / table.len() as f64;
         assert!(share(0) == 0.0 && (share(1) - 8.0 / 9.0).abs() < 1e-5);
         assert!(noise_table(&[0, 0]).len() <= NOISE_SLOTS);
     }
@@ -306,41 +271,11 @@ mod tests {
     #[test]
     fn wrong_settings_are_named() {
         for (config, word) in [
-            (
-                WordsConfig {
-                    dimensions: 1000,
-                    ..small()
-                },
-                "dimensions",
-            ),
-            (
-                WordsConfig {
-                    negatives: 0,
-                    ..small()
-                },
-                "negatives",
-            ),
-            (
-                WordsConfig {
-                    learning_rate: f32::NAN,
-                    ..small()
-                },
-                "learning_rate",
-            ),
-            (
-                WordsConfig {
-                    subsample: 0.0,
-                    ..small()
-                },
-                "subsample",
-            ),
-            (
-                WordsConfig {
-                    context_vocabulary: 3,
-                    ..small()
-                },
-                "context_vocabulary",
-            ),
+            (WordsConfig { dimensions: 1000, ..small() }, "dimensions"),
+            (WordsConfig { negatives: 0, ..small() }, "negatives"),
+            (WordsConfig { learning_rate: f32::NAN, ..small() }, "learning_rate"),
+            (WordsConfig { subsample: 0.0, ..small() }, "subsample"),
+            (WordsConfig { context_vocabulary: 3, ..small() }, "context_vocabulary"),
         ] {
             let error = config.check().expect_err("refused").to_string();
             assert!(error.contains(word), "{error}");

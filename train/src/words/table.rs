@@ -49,36 +49,23 @@ impl WordTable {
 
     /// Length of a vector; 0 for a table without words.
     pub fn dimensions(&self) -> usize {
-        self.vectors
-            .len()
-            .checked_div(self.tokens.len())
-            .unwrap_or(0)
+        self.vectors.len().checked_div(self.tokens.len()).unwrap_or(0)
     }
 
     /// The vector of a word; `index` must be below the number of tokens, else the slice is empty.
     pub fn vector(&self, index: usize) -> &[f32] {
         let width = self.dimensions();
-        self.vectors
-            .get(index * width..(index + 1) * width)
-            .unwrap_or(&[])
+        self.vectors.get(index * width..(index + 1) * width).unwrap_or(&[])
     }
 
     /// The index of a word, as it stands. The padding is no word.
     pub fn index(&self, word: &str) -> Option<usize> {
-        self.tokens
-            .iter()
-            .position(|token| token == word)
-            .filter(|index| *index != PAD)
+        self.tokens.iter().position(|token| token == word).filter(|index| *index != PAD)
     }
 
     /// All words and their indices, for many look-ups. The padding is no word.
     pub fn indices(&self) -> HashMap<&str, usize> {
-        self.tokens
-            .iter()
-            .enumerate()
-            .skip(PAD + 1)
-            .map(|(index, token)| (token.as_str(), index))
-            .collect()
+        self.tokens.iter().enumerate().skip(PAD + 1).map(|(index, token)| (token.as_str(), index)).collect()
     }
 
     /// Checks that the table is sound: a padding row of zeros first, distinct tokens, finite numbers, the right count.
@@ -88,40 +75,24 @@ impl WordTable {
     pub fn check(&self) -> Result<(), WordsError> {
         let fail = |what: String| Err(WordsError::Table(what));
         let width = self.dimensions();
-        if self.tokens.is_empty()
-            || self.tokens.len() > MOST_WORDS
-            || width == 0
-            || width > MOST_DIMENSIONS
-        {
+        if self.tokens.is_empty() || self.tokens.len() > MOST_WORDS || width == 0 || width > MOST_DIMENSIONS {
             return fail(format!("{} words of {width} dimensions", self.tokens.len()));
         }
         if self.vectors.len() != width * self.tokens.len() {
-            return fail(format!(
-                "{} numbers for {} words",
-                self.vectors.len(),
-                self.tokens.len()
-            ));
+            return fail(format!("{} numbers for {} words", self.vectors.len(), self.tokens.len()));
         }
         if self.tokens[PAD] != PAD_TOKEN {
-            return fail(format!(
-                "the first token is '{}', not '{PAD_TOKEN}'",
-                self.tokens[PAD].escape_debug()
-            ));
+            return fail(format!("the first token is '{}', not '{PAD_TOKEN}'", self.tokens[PAD].escape_debug()));
         }
         if self.vector(PAD).iter().any(|x| *x != 0.0) {
             return fail("the padding row is not zero".to_owned());
         }
         if let Some(at) = self.vectors.iter().position(|x| !x.is_finite()) {
-            return fail(format!(
-                "the vector of '{}' is not finite",
-                self.tokens[at / width].escape_debug()
-            ));
+            return fail(format!("the vector of '{}' is not finite", self.tokens[at / width].escape_debug()));
         }
         let plain = |token: &str| {
             (1..=MOST_TOKEN_BYTES).contains(&token.len())
-                && token
-                    .bytes()
-                    .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-')
+                && token.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-')
         };
         if let Some(token) = self.tokens[PAD + 1..].iter().find(|token| !plain(token)) {
             return fail(format!("'{}' is not a token", token.escape_debug()));
@@ -170,10 +141,8 @@ impl WordTable {
         }
         let words = number(line(&mut rest, 64), "words ").filter(|n| (1..=MOST_WORDS).contains(n));
         let words = words.ok_or_else(|| fail("the line 'words' is missing or out of range"))?;
-        let width = number(line(&mut rest, 64), "dimensions ")
-            .filter(|n| (1..=MOST_DIMENSIONS).contains(n));
-        let width =
-            width.ok_or_else(|| fail("the line 'dimensions' is missing or out of range"))?;
+        let width = number(line(&mut rest, 64), "dimensions ").filter(|n| (1..=MOST_DIMENSIONS).contains(n));
+        let width = width.ok_or_else(|| fail("the line 'dimensions' is missing or out of range"))?;
         line(&mut rest, 4096)
             .filter(|line| line.starts_with("origin "))
             .ok_or_else(|| fail("the line 'origin' is missing"))?;
@@ -186,25 +155,12 @@ impl WordTable {
         }
         let mut tokens = Vec::with_capacity(words);
         for _ in 0..words {
-            tokens.push(
-                line(&mut rest, MOST_TOKEN_BYTES + 1)
-                    .ok_or_else(|| fail("too few tokens"))?
-                    .to_owned(),
-            );
+            tokens.push(line(&mut rest, MOST_TOKEN_BYTES + 1).ok_or_else(|| fail("too few tokens"))?.to_owned());
         }
         if rest.len() != words * width * 2 {
-            return Err(fail(&format!(
-                "{} bytes of numbers, but {} are needed",
-                rest.len(),
-                words * width * 2
-            )));
+            return Err(fail(&format!("{} bytes of numbers, but {} are needed", rest.len(), words * width * 2)));
         }
-        let vectors = rest
-            .as_chunks::<2>()
-            .0
-            .iter()
-            .map(|pair| f16::from_le_bytes(*pair).to_f32())
-            .collect();
+        let vectors = rest.as_chunks::<2>().0.iter().map(|pair| f16::from_le_bytes(*pair).to_f32()).collect();
         let table = Self { tokens, vectors };
         table.check()?;
         Ok(table)
@@ -224,10 +180,7 @@ impl WordTable {
             file.sync_all()?;
             std::fs::rename(&part, path)
         };
-        write().map_err(|source| WordsError::Io {
-            path: path.to_owned(),
-            source,
-        })
+        write().map_err(|source| WordsError::Io { path: path.to_owned(), source })
     }
 
     /// Reads a file.
@@ -235,10 +188,7 @@ impl WordTable {
     /// # Errors
     /// [`WordsError::Io`] when it cannot be read, [`WordsError::Table`] when it is no sound table.
     pub fn load(path: &Path) -> Result<Self, WordsError> {
-        let bytes = std::fs::read(path).map_err(|source| WordsError::Io {
-            path: path.to_owned(),
-            source,
-        })?;
+        let bytes = std::fs::read(path).map_err(|source| WordsError::Io { path: path.to_owned(), source })?;
         Self::from_bytes(&bytes).map_err(|error| match error {
             WordsError::Table(what) => WordsError::Table(format!("{}: {what}", path.display())),
             other => other,
@@ -261,9 +211,7 @@ fn number(line: Option<&str>, name: &str) -> Option<usize> {
 
 /// The 64-bit hash of Fowler, Noll and Vo, variant 1a.
 fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3)
-    })
+    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3))
 }
 
 #[cfg(test)]
@@ -272,10 +220,7 @@ mod tests {
 
     fn table() -> WordTable {
         let tokens = ["<pad>", "silk", "t-shirt"].map(str::to_owned).to_vec();
-        WordTable {
-            tokens,
-            vectors: vec![0.0, 0.0, 0.6, 0.8, -1.0, 0.0],
-        }
+        WordTable { tokens, vectors: vec![0.0, 0.0, 0.6, 0.8, -1.0, 0.0] }
     }
 
     #[test]
@@ -285,22 +230,12 @@ mod tests {
         table().save(&path, "a test\nof two lines").expect("saved");
         let back = WordTable::load(&path).expect("loaded");
         assert_eq!(back.tokens, table().tokens);
-        assert!(
-            back.vectors
-                .iter()
-                .zip(&table().vectors)
-                .all(|(a, b)| (a - b).abs() < 1e-3)
-        );
+        assert!(back.vectors.iter().zip(&table().vectors).all(|(a, b)| (a - b).abs() < 1e-3));
         assert_eq!(
             back.to_bytes("x").expect("bytes"),
-            WordTable::from_bytes(&back.to_bytes("y").expect("bytes"))
-                .and_then(|t| t.to_bytes("x"))
-                .expect("bytes")
+            WordTable::from_bytes(&back.to_bytes("y").expect("bytes")).and_then(|t| t.to_bytes("x")).expect("bytes")
         );
-        assert_eq!(
-            (back.index("silk"), back.index("<pad>"), back.dimensions()),
-            (Some(1), None, 2)
-        );
+        assert_eq!((back.index("silk"), back.index("<pad>"), back.dimensions()), (Some(1), None, 2));
         assert_eq!(back.vector(9), [0.0f32; 0]);
     }
 
@@ -315,16 +250,8 @@ mod tests {
             let mut changed = bytes.clone();
             changed[place] ^= 4;
             // The origin is a remark and not guarded; all else is.
-            let remark = bytes
-                .windows(8)
-                .position(|w| w == b"origin t")
-                .expect("there")
-                + 7;
-            assert_eq!(
-                WordTable::from_bytes(&changed).is_ok(),
-                (remark..remark + 4).contains(&place),
-                "{place}"
-            );
+            let remark = bytes.windows(8).position(|w| w == b"origin t").expect("there") + 7;
+            assert_eq!(WordTable::from_bytes(&changed).is_ok(), (remark..remark + 4).contains(&place), "{place}");
         }
         let mut longer = bytes;
         longer.push(0);
@@ -344,9 +271,7 @@ mod tests {
         assert!(with(&|t| t.tokens[2] = "no token".to_owned()).contains("no token"));
         assert!(with(&|t| t.tokens[0] = "pad".to_owned()).contains("first token"));
         assert!(with(&|t| t.vectors.truncate(5)).contains("5 numbers"));
-        let error = WordTable::load(Path::new("no-such-table.f16"))
-            .expect_err("absent")
-            .to_string();
+        let error = WordTable::load(Path::new("no-such-table.f16")).expect_err("absent").to_string();
         assert!(error.contains("no-such-table.f16"));
     }
 }

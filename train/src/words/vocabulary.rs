@@ -63,28 +63,18 @@ impl Vocabulary {
     /// Chooses at most `rows` words with a vector (the padding row counted) and at most `contexts` words in all.
     ///
     /// When the generated sentences alone hold more words, their most frequent ones are kept.
-    pub fn choose(
-        corpus: &Corpus,
-        generated: &[Vec<String>],
-        rows: usize,
-        contexts: usize,
-    ) -> Self {
+    pub fn choose(corpus: &Corpus, generated: &[Vec<String>], rows: usize, contexts: usize) -> Self {
         let own = own_words(generated);
         let kept: HashSet<&str> = own.iter().map(|(word, _)| *word).collect();
         let counts = Counts::new(corpus, &kept);
-        let mut chosen = Self {
-            words: Vec::new(),
-            ids: HashMap::new(),
-            rows,
-        };
+        let mut chosen = Self { words: Vec::new(), ids: HashMap::new(), rows };
         chosen.push(PAD_TOKEN);
         for (word, _) in &own {
             if chosen.words.len() < rows {
                 chosen.push(word);
             }
         }
-        let near =
-            chosen.words.len() + ((rows - chosen.words.len()) as f64 * TEXTILE_SHARE) as usize;
+        let near = chosen.words.len() + ((rows - chosen.words.len()) as f64 * TEXTILE_SHARE) as usize;
         for id in counts.by_company() {
             if chosen.words.len() >= near {
                 break;
@@ -156,16 +146,10 @@ impl Counts {
         let mut textile = vec![0u64; words.len()];
         // A hyphenated word that is not one of ours counts as its parts, as the tokenizer will split it.
         let parts: Vec<Vec<usize>> = (0..words.len())
-            .map(
-                |id| match words[id].contains('-') && !kept.contains(words[id].as_str()) {
-                    true => words[id]
-                        .split('-')
-                        .filter_map(|part| corpus.id(part))
-                        .map(|part| part as usize)
-                        .collect(),
-                    false => vec![id],
-                },
-            )
+            .map(|id| match words[id].contains('-') && !kept.contains(words[id].as_str()) {
+                true => words[id].split('-').filter_map(|part| corpus.id(part)).map(|part| part as usize).collect(),
+                false => vec![id],
+            })
             .collect();
         for sentence in corpus.sentences() {
             let about = seeds.about_textiles(sentence);
@@ -193,27 +177,18 @@ impl Counts {
                 textile[singular] += textile[id];
             }
         }
-        Self {
-            all,
-            textile,
-            candidate,
-        }
+        Self { all, textile, candidate }
     }
 
     /// The candidates by how much oftener than chance they stand among textiles, weighted by how often they do.
     fn by_company(&self) -> Vec<usize> {
-        let base = self.textile.iter().sum::<u64>().max(1) as f64
-            / self.all.iter().sum::<u64>().max(1) as f64;
+        let base = self.textile.iter().sum::<u64>().max(1) as f64 / self.all.iter().sum::<u64>().max(1) as f64;
         let score = |id: usize| {
             let (textile, all) = (self.textile[id] as f64, self.all[id] as f64);
             textile * (textile / (all + 5.0) / base).ln()
         };
         let mut ids: Vec<(usize, f64)> = (0..self.all.len())
-            .filter(|id| {
-                self.candidate[*id]
-                    && self.all[*id] >= LEAST_COUNT
-                    && self.textile[*id] >= LEAST_COUNT
-            })
+            .filter(|id| self.candidate[*id] && self.all[*id] >= LEAST_COUNT && self.textile[*id] >= LEAST_COUNT)
             .map(|id| (id, score(id)))
             .filter(|(_, score)| *score > 0.0)
             .collect();
@@ -223,9 +198,7 @@ impl Counts {
 
     /// The candidates, frequent ones first.
     fn by_frequency(&self) -> Vec<usize> {
-        let mut ids: Vec<usize> = (0..self.all.len())
-            .filter(|id| self.candidate[*id] && self.all[*id] > 1)
-            .collect();
+        let mut ids: Vec<usize> = (0..self.all.len()).filter(|id| self.candidate[*id] && self.all[*id] > 1).collect();
         ids.sort_by(|a, b| self.all[*b].cmp(&self.all[*a]).then(a.cmp(b)));
         ids
     }
@@ -239,27 +212,15 @@ struct Seeds {
 
 impl Seeds {
     fn new(corpus: &Corpus) -> Self {
-        let mut seeds = Self {
-            strong: vec![false; corpus.words().len()],
-            weak: vec![false; corpus.words().len()],
-        };
+        let mut seeds = Self { strong: vec![false; corpus.words().len()], weak: vec![false; corpus.words().len()] };
         for word in TEXTILE_NOUNS {
             if let Some(id) = corpus.id(word) {
                 seeds.strong[id as usize] = true;
             }
         }
-        let names = fabrics().iter().flat_map(|fabric| {
-            fabric
-                .names
-                .iter()
-                .chain(&fabric.fibres)
-                .chain(&fabric.uses)
-        });
+        let names = fabrics().iter().flat_map(|fabric| fabric.names.iter().chain(&fabric.fibres).chain(&fabric.uses));
         // Of names of several words each alone may mean anything ("crepe de chine").
-        for word in names
-            .chain(THINGS.iter())
-            .filter(|name| !name.contains('_'))
-        {
+        for word in names.chain(THINGS.iter()).filter(|name| !name.contains('_')) {
             if let Some(id) = corpus.id(word) {
                 seeds.weak[id as usize] = true;
             }
@@ -307,20 +268,9 @@ impl Stream {
 
 /// The corpus and the generated sentences as numbers; unknown words are left out, so that windows reach over them.
 /// Sentences of the corpus about textiles stand `textile_repeat` times.
-pub fn encode(
-    corpus: &Corpus,
-    generated: &[Vec<String>],
-    vocabulary: &Vocabulary,
-    textile_repeat: usize,
-) -> Stream {
+pub fn encode(corpus: &Corpus, generated: &[Vec<String>], vocabulary: &Vocabulary, textile_repeat: usize) -> Stream {
     let known = |word: &str| vocabulary.id(word);
-    let numbers = |word: &str| {
-        resolve(word, &known)
-            .0
-            .into_iter()
-            .map(|id| id as u32)
-            .collect::<Vec<u32>>()
-    };
+    let numbers = |word: &str| resolve(word, &known).0.into_iter().map(|id| id as u32).collect::<Vec<u32>>();
     let words: Vec<Vec<u32>> = corpus.words().iter().map(|word| numbers(word)).collect();
     let seeds = Seeds::new(corpus);
     let mut stream = Stream::default();
@@ -328,11 +278,7 @@ pub fn encode(
     for sentence in corpus.sentences() {
         ids.clear();
         ids.extend(sentence.iter().flat_map(|id| &words[*id as usize]));
-        let times = if seeds.about_textiles(sentence) {
-            textile_repeat
-        } else {
-            1
-        };
+        let times = if seeds.about_textiles(sentence) { textile_repeat } else { 1 };
         for _ in 0..times {
             stream.push(&ids);
         }
@@ -353,7 +299,8 @@ mod tests {
     fn text() -> Corpus {
         let mut corpus = Corpus::default();
         for _ in 0..6 {
-            corpus.add_text("The tailor hemmed the fabric. The dog sleeps. Dogs sleep on the carpets of well-lit rooms.");
+            corpus
+                .add_text("The tailor hemmed the fabric. The dog sleeps. Dogs sleep on the carpets of well-lit rooms.");
             corpus.add_text("A duck swims. A well is lit. Does the doe sleep?");
         }
         corpus
@@ -365,22 +312,14 @@ mod tests {
         let chosen = Vocabulary::choose(&text(), &generated, 3000, 6000);
         assert_eq!(chosen.tokens()[PAD], PAD_TOKEN);
         assert_eq!(chosen.id(PAD_TOKEN), None);
-        for word in [
-            "denim", "t-shirt", "heavy", "tailor", "hemmed", "dog", "well", "lit",
-        ] {
-            assert!(
-                chosen.id(word).is_some_and(|id| id < chosen.rows()),
-                "{word}"
-            );
+        for word in ["denim", "t-shirt", "heavy", "tailor", "hemmed", "dog", "well", "lit"] {
+            assert!(chosen.id(word).is_some_and(|id| id < chosen.rows()), "{word}");
         }
         assert_eq!(chosen.id("dogs"), None);
         assert_eq!(chosen.id("well-lit"), None);
         assert!(chosen.id("denim") < chosen.id("tailor"));
         let small = Vocabulary::choose(&text(), &generated, 50, 80);
-        assert_eq!(
-            (small.rows(), small.contexts()),
-            (50, 50.max(small.contexts()).min(80))
-        );
+        assert_eq!((small.rows(), small.contexts()), (50, 50.max(small.contexts()).min(80)));
     }
 
     #[test]
@@ -390,15 +329,8 @@ mod tests {
         let thrice = encode(&text(), &[], &chosen, 3);
         // Six of the sentences, "the tailor hemmed the fabric", are about textiles; "a duck swims" is not.
         assert_eq!(thrice.ends.len() - once.ends.len(), 12);
-        let words = |ids: &[u32]| {
-            ids.iter()
-                .map(|id| chosen.words[*id as usize].as_str())
-                .collect::<Vec<_>>()
-                .join(" ")
-        };
-        assert_eq!(
-            words(&once.ids[once.ends[1]..once.ends[2]]),
-            "dog sleep on the carpets of well lit rooms"
-        );
+        let words =
+            |ids: &[u32]| ids.iter().map(|id| chosen.words[*id as usize].as_str()).collect::<Vec<_>>().join(" ");
+        assert_eq!(words(&once.ids[once.ends[1]..once.ends[2]]), "dog sleep on the carpets of well lit rooms");
     }
 }
