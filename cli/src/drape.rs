@@ -28,7 +28,11 @@ pub fn run(args: &args::Drape) -> Result<(), Failure> {
     let json = serde_json::to_string_pretty(&report).map_err(Failure::new)? + "\n";
     let paths = folder.fill(&[&png, json.as_bytes()])?;
 
-    let mut text = format!("{}: {}\n\n", failure::one_line(&report.description), notes::setup(&report));
+    let mut text = format!(
+        "{}: {}\n\n",
+        failure::one_line(&report.description),
+        notes::setup(&report)
+    );
     text.push_str(&notes::table(&report));
     text.push('\n');
     for note in notes::notes(&report) {
@@ -119,7 +123,10 @@ fn simulate(case: &Case, reference: &Fabric, c: &Correction) -> Result<Vec<Outco
     }
     drop(progress);
     if let Some(o) = outcomes.iter().find(|o| o.name == "reference" && !o.finite) {
-        complain(&format!("warning: the reference itself blew up at {} substeps", o.substeps));
+        complain(&format!(
+            "warning: the reference itself blew up at {} substeps",
+            o.substeps
+        ));
     }
     Ok(outcomes)
 }

@@ -10,7 +10,10 @@ use crate::{args, model};
 /// Runs the command.
 pub fn run(args: &args::Info) -> Result<(), Failure> {
     let generator = model::load(args.file.as_deref())?;
-    let source = args.file.as_ref().map_or(model::BUILT_IN.into(), |f| f.display().to_string());
+    let source = args
+        .file
+        .as_ref()
+        .map_or(model::BUILT_IN.into(), |f| f.display().to_string());
     let text = if args.json {
         let json = serde_json::to_string_pretty(&as_json(&source, generator.info()));
         json.map_err(Failure::new)? + "\n"
@@ -22,8 +25,19 @@ pub fn run(args: &args::Info) -> Result<(), Failure> {
 
 fn ranges(names: &[&str], ranges: &[Range]) -> Value {
     let pairs = names.iter().zip(ranges);
-    let map: Map<String, Value> = pairs.map(|(n, r)| (n.to_string(), json!([r.low, r.high]))).collect();
+    let map: Map<String, Value> = pairs
+        .map(|(n, r)| (n.to_string(), json!([r.low, r.high])))
+        .collect();
     Value::Object(map)
+}
+
+/// A number as short as it can be read back.
+fn number(x: f32) -> String {
+    if (1e-4..1e6).contains(&x) {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
 }
 
 fn as_json(source: &str, info: &Info) -> Value {
@@ -63,7 +77,8 @@ fn as_text(source: &str, info: &Info) -> String {
     let ranges = |text: &mut String, title: &str, names: &[&str], ranges: &[Range]| {
         for (i, (name, r)) in names.iter().zip(ranges).enumerate() {
             let title = if i == 0 { title } else { "" };
-            text.push_str(&format!("{title:<16}  {name:<18}  {} to {}\n", r.low, r.high));
+            let (low, high) = (number(r.low), number(r.high));
+            text.push_str(&format!("{title:<16}  {name:<18}  {low} to {high}\n"));
         }
     };
     ranges(&mut text, "Stiffness, N/m", &CHANNELS, &info.channel_ranges);

@@ -51,11 +51,15 @@ pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
 fn warn(c: &Correction, limit: usize) {
     if !c.unknown_words.is_empty() {
         let words = quoted(&c.unknown_words);
-        complain(&format!("warning: the generator does not know {words}: skipped"));
+        complain(&format!(
+            "warning: the generator does not know {words}: skipped"
+        ));
     }
     if !c.dropped_words.is_empty() {
         let words = quoted(&c.dropped_words);
-        complain(&format!("warning: only the first {limit} known words count: {words} skipped"));
+        complain(&format!(
+            "warning: only the first {limit} known words count: {words} skipped"
+        ));
     }
 }
 

@@ -43,7 +43,8 @@ pub fn us_per_frame(s: &Setting, grid: [u32; 2]) -> f64 {
 /// The table of all settings with a line that explains its columns.
 pub fn table(report: &Report) -> String {
     let header = [
-        "setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns", "us/frame", "finite",
+        "setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns",
+        "us/frame", "finite",
     ];
     let rows: Vec<Vec<String>> = report
         .settings
@@ -78,7 +79,13 @@ pub fn setup(report: &Report) -> String {
     format!(
         "{}, {rows} x {columns} particles, {width} m x {height} m, {} Hz x {} substeps, {} budget, {:.3} kg/m^2, seed {}, \
          after {} s",
-        report.scene, report.rate_hz, report.substeps, report.budget, report.density_kg_m2, report.seed, report.seconds
+        report.scene,
+        report.rate_hz,
+        report.substeps,
+        report.budget,
+        report.density_kg_m2,
+        report.seed,
+        report.seconds
     )
 }
 
@@ -90,13 +97,17 @@ pub fn stiffness(k: Stiffness) -> String {
     )
 }
 
-fn points(what: &str, d: Difference) -> String {
-    let signed = |x: f64| if x.is_finite() { format!("{x:+.2}") } else { "-".into() };
-    format!(
-        "{} points at the largest and {} away from pins against {what}",
-        signed(d.max_points),
-        signed(d.ex_pin_max_points)
-    )
+/// The generated cloth against another, largest / away from pins.
+fn points(d: Difference, other: &str) -> String {
+    let signed = |x: f64| {
+        if x.is_finite() {
+            format!("{x:+.2}")
+        } else {
+            "-".into()
+        }
+    };
+    let (max, ex_pin) = (signed(d.max_points), signed(d.ex_pin_max_points));
+    format!("{max} / {ex_pin} against {other}")
 }
 
 /// What the reader must know beside the numbers, a sentence each.
@@ -104,25 +115,38 @@ pub fn notes(report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
     let r = &report.reference_fabric;
     let fabric = match (r.kind.as_str(), r.measured) {
-        (NO_KIND, _) => "no fabric is named, so it has the medians of the generated field".to_string(),
+        (NO_KIND, _) => {
+            "no fabric is named, so it has the medians of the generated field".to_string()
+        }
         (kind, true) => format!("{kind}, measured"),
         (kind, false) => format!("{kind}, an estimate"),
     };
-    let substeps = report.reference_substeps.map_or(String::new(), |n| format!(", {n} substeps"));
-    notes.push(format!("Reference: {fabric}: {}{substeps}.", stiffness(r.stiffness_n_per_m)));
+    let substeps = report
+        .reference_substeps
+        .map_or(String::new(), |n| format!(", {n} substeps"));
+    notes.push(format!(
+        "Reference: {fabric}: {}{substeps}.",
+        stiffness(r.stiffness_n_per_m)
+    ));
     notes.push(format!(
         "Generated: medians before the budget: {}.",
         stiffness(report.generator.median_stiffness_n_per_m)
     ));
     if let Some(share) = report.net_share {
         notes.push(format!(
-            "The net's own share: {}, {} (below 0 the net did better).",
-            points("uniform + inertia", share.uniform_inertia),
-            points("analytic + inertia", share.analytic_inertia)
+            "The net's own share, points of stretch at the largest / away from pins (below 0: it stretches less): {}, {}; {}.",
+            points(share.uniform_inertia, "uniform + inertia"),
+            points(share.analytic_inertia, "analytic + inertia"),
+            points(share.reference, "the reference")
         ));
     }
     let named = |pick: &dyn Fn(&&Setting) -> bool| -> String {
-        let names: Vec<String> = report.settings.iter().filter(pick).map(|s| heading(s.name)).collect();
+        let names: Vec<String> = report
+            .settings
+            .iter()
+            .filter(pick)
+            .map(|s| heading(s.name))
+            .collect();
         names.join(", ")
     };
     let blown = named(&|s| !s.finite);

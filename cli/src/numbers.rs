@@ -77,7 +77,8 @@ pub fn substeps(text: &str) -> Result<u32, String> {
 
 /// Simulated time in s: above 0, at most an hour.
 pub fn seconds(text: &str) -> Result<f32, String> {
-    within(text, f32::MIN_POSITIVE..=3600.0, "").map_err(|_| "must be above 0, at most 3600 s".into())
+    within(text, f32::MIN_POSITIVE..=3600.0, "")
+        .map_err(|_| "must be above 0, at most 3600 s".into())
 }
 
 /// Mass per area in kg/m^2: from a soap film to a lead apron.
@@ -104,7 +105,9 @@ mod tests {
         assert_eq!(grid("32x48"), size(32, 48));
         assert_eq!(grid("2X4096"), size(2, 4096));
         assert_eq!(grid("8 \u{d7} 9"), size(8, 9));
-        for bad in ["1x1", "70000x2", "2x4097", "0x0", "-3x4", "3.5x4", "x", "3x", "3x4x5", "nanx4"] {
+        for bad in [
+            "1x1", "70000x2", "2x4097", "0x0", "-3x4", "3.5x4", "x", "3x", "3x4x5", "nanx4",
+        ] {
             let e = grid(bad).expect_err(bad);
             assert!(e.contains("2 to 4096"), "{bad}: {e}");
         }
@@ -117,7 +120,9 @@ mod tests {
     fn side_lengths() {
         let s = sides("1.5x2").expect("two sides");
         assert_eq!((s.width_m, s.height_m), (1.5, 2.0));
-        for bad in ["0x1", "1x-1", "1xNaN", "infx1", "1e-30x1", "20000x1", "1", "ax1"] {
+        for bad in [
+            "0x1", "1x-1", "1xNaN", "infx1", "1e-30x1", "20000x1", "1", "ax1",
+        ] {
             assert!(sides(bad).is_err(), "{bad}");
         }
     }

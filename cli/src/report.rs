@@ -133,18 +133,19 @@ impl From<&Outcome> for Setting {
     }
 }
 
-/// The generated cloth minus another, in points of stretch: below 0 the net did better.
+/// The generated cloth minus another, in points of stretch: below 0 it stretches less.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     pub max_points: f64,
     pub ex_pin_max_points: f64,
 }
 
-/// What the net adds to what the inertia field does for any stiffness.
+/// What the net adds to what the inertia field does for any stiffness, and what is left to the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NetShare {
     pub uniform_inertia: Difference,
     pub analytic_inertia: Difference,
+    pub reference: Difference,
 }
 
 /// `report.json`.
@@ -183,9 +184,18 @@ pub fn budget_name(budget: Budget) -> &'static str {
 
 impl Report {
     /// The report of a comparison.
-    pub fn new(case: &Case, reference: &Fabric, info: &Info, c: &Correction, outcomes: &[Outcome]) -> Report {
+    pub fn new(
+        case: &Case,
+        reference: &Fabric,
+        info: &Info,
+        c: &Correction,
+        outcomes: &[Outcome],
+    ) -> Report {
         let settings: Vec<Setting> = outcomes.iter().map(Setting::from).collect();
-        let reference_substeps = settings.iter().find(|s| s.name == "reference").map(|s| s.substeps);
+        let reference_substeps = settings
+            .iter()
+            .find(|s| s.name == "reference")
+            .map(|s| s.substeps);
         Report {
             scene: case.scene.name(),
             description: c.description.clone(),
@@ -214,7 +224,12 @@ impl Report {
 }
 
 fn net_share(settings: &[Setting]) -> Option<NetShare> {
-    let stretch = |name| settings.iter().find(|s| s.name == name).map(|s| s.stretch_pct);
+    let stretch = |name| {
+        settings
+            .iter()
+            .find(|s| s.name == name)
+            .map(|s| s.stretch_pct)
+    };
     let generated = stretch("generated")?;
     let minus = |other: StretchPct| Difference {
         max_points: generated.max - other.max,
@@ -223,6 +238,7 @@ fn net_share(settings: &[Setting]) -> Option<NetShare> {
     Some(NetShare {
         uniform_inertia: minus(stretch("uniform_inertia")?),
         analytic_inertia: minus(stretch("analytic_inertia")?),
+        reference: minus(stretch("reference")?),
     })
 }
 
@@ -252,18 +268,27 @@ mod tests {
 
     #[test]
     fn the_share_of_the_net_is_the_difference() {
-        let mut settings = vec![setting("uniform_inertia", 3.0, 2.0), setting("generated", 2.5, 2.25)];
+        let mut settings = vec![
+            setting("uniform_inertia", 3.0, 2.0),
+            setting("generated", 2.5, 2.25),
+        ];
         assert_eq!(net_share(&settings), None);
         settings.push(setting("analytic_inertia", 2.0, 2.0));
+        settings.push(setting("reference", 1.5, 0.25));
         let share = net_share(&settings).expect("all three");
         assert_eq!(share.uniform_inertia.max_points, -0.5);
         assert_eq!(share.uniform_inertia.ex_pin_max_points, 0.25);
         assert_eq!(share.analytic_inertia.max_points, 0.5);
+        assert_eq!(share.reference.ex_pin_max_points, 2.0);
     }
 
     #[test]
     fn numbers_that_are_not_finite_are_null() {
-        let json = serde_json::to_string(&setting("random", f64::INFINITY, 1.0)).expect("serialised");
-        assert!(json.contains("\"max\":null") && json.contains("\"peak_stretch_pct\":null"), "{json}");
+        let json =
+            serde_json::to_string(&setting("random", f64::INFINITY, 1.0)).expect("serialised");
+        assert!(
+            json.contains("\"max\":null") && json.contains("\"peak_stretch_pct\":null"),
+            "{json}"
+        );
     }
 }

@@ -39,7 +39,10 @@ pub fn refuses(folder: &Path, args: &[&str]) -> String {
     assert_eq!(run.stderr.lines().count(), 1, "{args:?}: {}", run.stderr);
     let line = run.stderr.trim_end();
     assert!(line.starts_with("taut: "), "{line}");
-    assert!(!line.contains("internal error") && !line.contains("panicked"), "{line}");
+    assert!(
+        !line.contains("internal error") && !line.contains("panicked"),
+        "{line}"
+    );
     line.into()
 }
 
@@ -47,7 +50,12 @@ pub fn refuses(folder: &Path, args: &[&str]) -> String {
 pub fn entries(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .expect("listed")
-        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
+        .map(|e| {
+            e.expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .collect();
     names.sort();
     names
