@@ -51,12 +51,7 @@ pub struct Cloth {
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1x1", value_parser = numbers::sides, allow_negative_numbers = true)]
     pub size: Sides,
     /// Another seed gives another field of the same fabric.
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
     /// A generator file instead of the one that is built in.
     #[arg(long, value_name = "FILE.onnx")]
@@ -118,12 +113,10 @@ pub struct Info {
 /// What to do where the arguments did not parse: help and version go to stdout, all else is a failure in one line.
 pub fn answer(e: &clap::Error) -> Result<(), Failure> {
     match e.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            failure::print(&e.render().to_string())
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => failure::print(&e.render().to_string()),
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            Err(Failure::new("no command: give drape, correct or info (taut --help tells more)"))
         }
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => Err(
-            Failure::new("no command: give drape, correct or info (taut --help tells more)"),
-        ),
         _ => Err(Failure::new(short(&e.render().to_string()))),
     }
 }
@@ -171,10 +164,7 @@ mod tests {
         assert_eq!((d.cloth.grid.rows, d.cloth.grid.columns), (32, 32));
         assert_eq!((d.cloth.size.width_m, d.cloth.size.height_m), (1.0, 1.0));
         assert_eq!((d.rate, d.substeps, d.seconds), (60.0, 16, 10.0));
-        assert_eq!(
-            (d.budget, d.density, d.cloth.seed),
-            (Budget::Tuned, None, 0)
-        );
+        assert_eq!((d.budget, d.density, d.cloth.seed), (Budget::Tuned, None, 0));
         assert_eq!(d.out, PathBuf::from("out/drape"));
         assert!(!d.json && d.cloth.model.is_none());
     }
@@ -217,10 +207,7 @@ mod tests {
         ] {
             let text = parse(line).err().unwrap_or_else(|| panic!("{line} parsed"));
             assert!(text.contains(named), "{line}: {text}");
-            assert!(
-                !text.contains('\n') && !text.contains("\\n") && !text.contains("Usage"),
-                "{text}"
-            );
+            assert!(!text.contains('\n') && !text.contains("\\n") && !text.contains("Usage"), "{text}");
         }
     }
 

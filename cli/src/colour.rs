@@ -15,27 +15,15 @@ const COLOURS: [(&[&str], Srgb, Ramp); 15] = [
     (&["black", "charcoal"], [54, 56, 62], Ramp::Heat),
     (&["grey", "gray", "silver"], [126, 130, 136], Ramp::Heat),
     (&["white"], [208, 210, 212], Ramp::Heat),
-    (
-        &["ivory", "cream", "ecru", "beige"],
-        [200, 192, 172],
-        Ramp::Heat,
-    ),
+    (&["ivory", "cream", "ecru", "beige"], [200, 192, 172], Ramp::Heat),
     (&["green", "olive", "khaki"], [76, 112, 84], Ramp::Heat),
     (&["teal", "turquoise", "cyan"], [58, 118, 124], Ramp::Heat),
     (&["purple", "violet", "lilac"], [98, 82, 138], Ramp::Heat),
     (&["brown", "tan"], [108, 86, 70], Ramp::Heat),
-    (
-        &["red", "scarlet", "crimson", "burgundy"],
-        [128, 58, 62],
-        Ramp::ColorBlindSafe,
-    ),
+    (&["red", "scarlet", "crimson", "burgundy"], [128, 58, 62], Ramp::ColorBlindSafe),
     (&["pink", "rose"], [172, 124, 134], Ramp::ColorBlindSafe),
     (&["orange", "rust"], [158, 104, 70], Ramp::ColorBlindSafe),
-    (
-        &["yellow", "gold", "golden", "mustard"],
-        [158, 142, 84],
-        Ramp::ColorBlindSafe,
-    ),
+    (&["yellow", "gold", "golden", "mustard"], [158, 142, 84], Ramp::ColorBlindSafe),
 ];
 
 /// How the cloth of a description is drawn: by its first colour word, made darker or lighter by a word just before it.
@@ -54,15 +42,9 @@ pub fn style(description: &str) -> Style {
             Some("light" | "pale" | "sky") => colour.map(|c| c + (255 - c) / 3),
             _ => *colour,
         };
-        return Style {
-            fabric,
-            ramp: *ramp,
-        };
+        return Style { fabric, ramp: *ramp };
     }
-    Style {
-        fabric: NEUTRAL,
-        ramp: Ramp::Heat,
-    }
+    Style { fabric: NEUTRAL, ramp: Ramp::Heat }
 }
 
 #[cfg(test)]

@@ -28,11 +28,7 @@ pub fn run(args: &args::Drape) -> Result<(), Failure> {
     let json = serde_json::to_string_pretty(&report).map_err(Failure::new)? + "\n";
     let paths = folder.fill(&[&png, json.as_bytes()])?;
 
-    let mut text = format!(
-        "{}: {}\n\n",
-        failure::one_line(&report.description),
-        notes::setup(&report)
-    );
+    let mut text = format!("{}: {}\n\n", failure::one_line(&report.description), notes::setup(&report));
     text.push_str(&notes::table(&report));
     text.push('\n');
     for note in notes::notes(&report) {
@@ -63,19 +59,9 @@ fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
         }
     };
     let cloth = &args.cloth;
-    let step = ClothDef {
-        rate_hz: args.rate,
-        substeps: args.substeps,
-        density_kg_m2,
-        ..ClothDef::default()
-    };
+    let step = ClothDef { rate_hz: args.rate, substeps: args.substeps, density_kg_m2, ..ClothDef::default() };
     step.check().map_err(|e| {
-        Failure::new(format_args!(
-            "{} Hz x {} substeps is a step of {} s: {e}",
-            args.rate,
-            args.substeps,
-            step.dt_s()
-        ))
+        Failure::new(format_args!("{} Hz x {} substeps is a step of {} s: {e}", args.rate, args.substeps, step.dt_s()))
     })?;
     Ok(Case {
         scene: cloth.scene,
@@ -123,10 +109,7 @@ fn simulate(case: &Case, reference: &Fabric, c: &Correction) -> Result<Vec<Outco
     }
     drop(progress);
     if let Some(o) = outcomes.iter().find(|o| o.name == "reference" && !o.finite) {
-        complain(&format!(
-            "warning: the reference itself blew up at {} substeps",
-            o.substeps
-        ));
+        complain(&format!("warning: the reference itself blew up at {} substeps", o.substeps));
     }
     Ok(outcomes)
 }

@@ -10,10 +10,7 @@ use crate::{args, model};
 /// Runs the command.
 pub fn run(args: &args::Info) -> Result<(), Failure> {
     let generator = model::load(args.file.as_deref())?;
-    let source = args
-        .file
-        .as_ref()
-        .map_or(model::BUILT_IN.into(), |f| f.display().to_string());
+    let source = args.file.as_ref().map_or(model::BUILT_IN.into(), |f| f.display().to_string());
     let text = if args.json {
         let json = serde_json::to_string_pretty(&as_json(&source, generator.info()));
         json.map_err(Failure::new)? + "\n"
@@ -25,19 +22,13 @@ pub fn run(args: &args::Info) -> Result<(), Failure> {
 
 fn ranges(names: &[&str], ranges: &[Range]) -> Value {
     let pairs = names.iter().zip(ranges);
-    let map: Map<String, Value> = pairs
-        .map(|(n, r)| (n.to_string(), json!([r.low, r.high])))
-        .collect();
+    let map: Map<String, Value> = pairs.map(|(n, r)| (n.to_string(), json!([r.low, r.high]))).collect();
     Value::Object(map)
 }
 
 /// A number as short as it can be read back.
 fn number(x: f32) -> String {
-    if (1e-4..1e6).contains(&x) {
-        x.to_string()
-    } else {
-        format!("{x:e}")
-    }
+    if (1e-4..1e6).contains(&x) { x.to_string() } else { format!("{x:e}") }
 }
 
 fn as_json(source: &str, info: &Info) -> Value {

@@ -29,12 +29,7 @@ pub fn load(path: Option<&Path>) -> Result<Generator, Failure> {
 pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
     let generator = load(args.model.as_deref())?;
     let columns = args.grid.columns as usize;
-    let pins: Vec<(usize, usize)> = args
-        .scene
-        .pins(columns)
-        .into_iter()
-        .map(|p| (p / columns, p % columns))
-        .collect();
+    let pins: Vec<(usize, usize)> = args.scene.pins(columns).into_iter().map(|p| (p / columns, p % columns)).collect();
     let correction = generator.correct(&Request {
         description: &args.description,
         seed: args.seed,
@@ -51,26 +46,19 @@ pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
 fn warn(c: &Correction, limit: usize) {
     if !c.unknown_words.is_empty() {
         let words = quoted(&c.unknown_words);
-        complain(&format!(
-            "warning: the generator does not know {words}: skipped"
-        ));
+        complain(&format!("warning: the generator does not know {words}: skipped"));
     }
     if !c.dropped_words.is_empty() {
         let words = quoted(&c.dropped_words);
-        complain(&format!(
-            "warning: only the first {limit} known words count: {words} skipped"
-        ));
+        complain(&format!("warning: only the first {limit} known words count: {words} skipped"));
     }
 }
 
 /// Words for a message: the first eight, each cut at 40 letters.
 fn quoted(words: &[String]) -> String {
     const SHOWN: usize = 8;
-    let mut list: Vec<String> = words
-        .iter()
-        .take(SHOWN)
-        .map(|w| format!("`{}`", w.chars().take(40).collect::<String>()))
-        .collect();
+    let mut list: Vec<String> =
+        words.iter().take(SHOWN).map(|w| format!("`{}`", w.chars().take(40).collect::<String>())).collect();
     if words.len() > SHOWN {
         list.push(format!("{} more", words.len() - SHOWN));
     }

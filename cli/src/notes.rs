@@ -27,11 +27,7 @@ pub fn fills_the_budget(name: &str) -> bool {
 
 /// How much of K was cut, in percent.
 pub fn cut(s: &Setting) -> String {
-    if fills_the_budget(s.name) {
-        "-".into()
-    } else {
-        format!("{:.0}", 100.0 * s.cut_fraction)
-    }
+    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction) }
 }
 
 /// CPU time of a frame in microseconds.
@@ -42,10 +38,8 @@ pub fn us_per_frame(s: &Setting, grid: [u32; 2]) -> f64 {
 
 /// The table of all settings with a line that explains its columns.
 pub fn table(report: &Report) -> String {
-    let header = [
-        "setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns",
-        "us/frame", "finite",
-    ];
+    let header =
+        ["setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns", "us/frame", "finite"];
     let rows: Vec<Vec<String>> = report
         .settings
         .iter()
@@ -79,32 +73,19 @@ pub fn setup(report: &Report) -> String {
     format!(
         "{}, {rows} x {columns} particles, {width} m x {height} m, {} Hz x {} substeps, {} budget, {:.3} kg/m^2, seed {}, \
          after {} s",
-        report.scene,
-        report.rate_hz,
-        report.substeps,
-        report.budget,
-        report.density_kg_m2,
-        report.seed,
-        report.seconds
+        report.scene, report.rate_hz, report.substeps, report.budget, report.density_kg_m2, report.seed, report.seconds
     )
 }
 
 /// Stiffness in a few words.
 pub fn stiffness(k: Stiffness) -> String {
-    format!(
-        "warp {:.0}, weft {:.0}, shear {:.1}, bend {:.2} N/m",
-        k.warp, k.weft, k.shear, k.bend
-    )
+    format!("warp {:.0}, weft {:.0}, shear {:.1}, bend {:.2} N/m", k.warp, k.weft, k.shear, k.bend)
 }
 
 /// The generated cloth against another, largest / away from pins.
 fn points(d: Difference, other: &str) -> String {
     let signed = |x: f64| {
-        if x.is_finite() {
-            format!("{x:+.2}")
-        } else {
-            "-".into()
-        }
+        if x.is_finite() { format!("{x:+.2}") } else { "-".into() }
     };
     let (max, ex_pin) = (signed(d.max_points), signed(d.ex_pin_max_points));
     format!("{max} / {ex_pin} against {other}")
@@ -115,19 +96,12 @@ pub fn notes(report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
     let r = &report.reference_fabric;
     let fabric = match (r.kind.as_str(), r.measured) {
-        (NO_KIND, _) => {
-            "no fabric is named, so it has the medians of the generated field".to_string()
-        }
+        (NO_KIND, _) => "no fabric is named, so it has the medians of the generated field".to_string(),
         (kind, true) => format!("{kind}, measured"),
         (kind, false) => format!("{kind}, an estimate"),
     };
-    let substeps = report
-        .reference_substeps
-        .map_or(String::new(), |n| format!(", {n} substeps"));
-    notes.push(format!(
-        "Reference: {fabric}: {}{substeps}.",
-        stiffness(r.stiffness_n_per_m)
-    ));
+    let substeps = report.reference_substeps.map_or(String::new(), |n| format!(", {n} substeps"));
+    notes.push(format!("Reference: {fabric}: {}{substeps}.", stiffness(r.stiffness_n_per_m)));
     notes.push(format!(
         "Generated: medians before the budget: {}.",
         stiffness(report.generator.median_stiffness_n_per_m)
@@ -141,12 +115,7 @@ pub fn notes(report: &Report) -> Vec<String> {
         ));
     }
     let named = |pick: &dyn Fn(&&Setting) -> bool| -> String {
-        let names: Vec<String> = report
-            .settings
-            .iter()
-            .filter(pick)
-            .map(|s| heading(s.name))
-            .collect();
+        let names: Vec<String> = report.settings.iter().filter(pick).map(|s| heading(s.name)).collect();
         names.join(", ")
     };
     let blown = named(&|s| !s.finite);
@@ -155,10 +124,7 @@ pub fn notes(report: &Report) -> Vec<String> {
     }
     let moving = named(&|s| s.finite && s.rms_speed_m_s > AT_REST_M_S);
     if !moving.is_empty() {
-        notes.push(format!(
-            "Still moving after {} s, so not the stretch at rest: {moving}.",
-            report.seconds
-        ));
+        notes.push(format!("Still moving after {} s, so not the stretch at rest: {moving}.", report.seconds));
     }
     notes
 }

@@ -24,17 +24,12 @@ pub struct Sides {
 fn within(text: &str, bounds: RangeInclusive<f32>, unit: &str) -> Result<f32, String> {
     let wrong = || format!("must be {} to {}{unit}", bounds.start(), bounds.end());
     let number: f32 = text.trim().parse().map_err(|_| wrong())?;
-    if bounds.contains(&number) {
-        Ok(number)
-    } else {
-        Err(wrong())
-    }
+    if bounds.contains(&number) { Ok(number) } else { Err(wrong()) }
 }
 
 /// The two halves of `AxB`.
 fn pair<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a str), String> {
-    text.split_once(['x', 'X', '\u{d7}'])
-        .ok_or_else(|| format!("give two numbers, for example {example}"))
+    text.split_once(['x', 'X', '\u{d7}']).ok_or_else(|| format!("give two numbers, for example {example}"))
 }
 
 /// `ROWSxCOLUMNS`.
@@ -42,24 +37,16 @@ pub fn grid(text: &str) -> Result<GridSize, String> {
     let (rows, columns) = pair(text, "32x32")?;
     let side = |s: &str| {
         let number = s.trim().parse::<u32>().ok();
-        number
-            .filter(|n| (2..=taut::Grid::MAX_SIDE).contains(n))
-            .ok_or("each side needs 2 to 4096 particles")
+        number.filter(|n| (2..=taut::Grid::MAX_SIDE).contains(n)).ok_or("each side needs 2 to 4096 particles")
     };
-    Ok(GridSize {
-        rows: side(rows)?,
-        columns: side(columns)?,
-    })
+    Ok(GridSize { rows: side(rows)?, columns: side(columns)? })
 }
 
 /// `WIDTHxHEIGHT` in m.
 pub fn sides(text: &str) -> Result<Sides, String> {
     let (width, height) = pair(text, "1x1.5")?;
     let side = |s| within(s, 0.001..=10_000.0, " m").map_err(|e| format!("each side {e}"));
-    Ok(Sides {
-        width_m: side(width)?,
-        height_m: side(height)?,
-    })
+    Ok(Sides { width_m: side(width)?, height_m: side(height)? })
 }
 
 /// Frames per second.
@@ -70,15 +57,12 @@ pub fn rate(text: &str) -> Result<f32, String> {
 /// Substeps of a frame.
 pub fn substeps(text: &str) -> Result<u32, String> {
     let number = text.trim().parse::<u32>().ok();
-    number
-        .filter(|n| (1..=1024).contains(n))
-        .ok_or("must be a whole number, 1 to 1024".into())
+    number.filter(|n| (1..=1024).contains(n)).ok_or("must be a whole number, 1 to 1024".into())
 }
 
 /// Simulated time in s: above 0, at most an hour.
 pub fn seconds(text: &str) -> Result<f32, String> {
-    within(text, f32::MIN_POSITIVE..=3600.0, "")
-        .map_err(|_| "must be above 0, at most 3600 s".into())
+    within(text, f32::MIN_POSITIVE..=3600.0, "").map_err(|_| "must be above 0, at most 3600 s".into())
 }
 
 /// Mass per area in kg/m^2: from a soap film to a lead apron.
@@ -105,9 +89,7 @@ mod tests {
         assert_eq!(grid("32x48"), size(32, 48));
         assert_eq!(grid("2X4096"), size(2, 4096));
         assert_eq!(grid("8 \u{d7} 9"), size(8, 9));
-        for bad in [
-            "1x1", "70000x2", "2x4097", "0x0", "-3x4", "3.5x4", "x", "3x", "3x4x5", "nanx4",
-        ] {
+        for bad in ["1x1", "70000x2", "2x4097", "0x0", "-3x4", "3.5x4", "x", "3x", "3x4x5", "nanx4"] {
             let e = grid(bad).expect_err(bad);
             assert!(e.contains("2 to 4096"), "{bad}: {e}");
         }
@@ -120,9 +102,7 @@ mod tests {
     fn side_lengths() {
         let s = sides("1.5x2").expect("two sides");
         assert_eq!((s.width_m, s.height_m), (1.5, 2.0));
-        for bad in [
-            "0x1", "1x-1", "1xNaN", "infx1", "1e-30x1", "20000x1", "1", "ax1",
-        ] {
+        for bad in ["0x1", "1x-1", "1xNaN", "infx1", "1e-30x1", "20000x1", "1", "ax1"] {
             assert!(sides(bad).is_err(), "{bad}");
         }
     }

@@ -54,11 +54,7 @@ fn temporary(path: &Path) -> PathBuf {
 fn write_all(files: &[(PathBuf, &[u8])]) -> Result<(), Failure> {
     let mut done = Ok(());
     for (path, bytes) in files {
-        let new = OpenOptions::new()
-            .write(true)
-            .create(true)
-            .truncate(true)
-            .open(temporary(path));
+        let new = OpenOptions::new().write(true).create(true).truncate(true).open(temporary(path));
         let written = new.and_then(|mut f| f.write_all(bytes));
         if let Err(e) = written {
             done = Err(cannot_write(path, &e));
@@ -88,16 +84,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 fn check_name(path: &Path) -> Result<(), Failure> {
     if path.file_name().is_none() {
-        return Err(Failure::new(format_args!(
-            "cannot write {}: not a file name",
-            path.display()
-        )));
+        return Err(Failure::new(format_args!("cannot write {}: not a file name", path.display())));
     }
     if path.is_dir() {
-        return Err(Failure::new(format_args!(
-            "cannot write {}: it is a folder",
-            path.display()
-        )));
+        return Err(Failure::new(format_args!("cannot write {}: it is a folder", path.display())));
     }
     Ok(())
 }
@@ -115,15 +105,8 @@ impl Folder {
     pub fn open(path: &Path, files: &[&'static str]) -> Result<Folder, Failure> {
         let mut made = unfilled();
         let missing = |p: &&Path| !p.as_os_str().is_empty() && !p.exists();
-        let new: Vec<PathBuf> = path
-            .ancestors()
-            .take_while(missing)
-            .map(Path::to_path_buf)
-            .collect();
-        let folder = Folder {
-            path: path.into(),
-            files: files.into(),
-        };
+        let new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let folder = Folder { path: path.into(), files: files.into() };
         let created = fs::create_dir_all(path);
         made.extend(new);
         drop(made);
@@ -132,11 +115,7 @@ impl Folder {
             check_name(&path.join(file))?;
         }
         let probe = temporary(&path.join("probe"));
-        let probed = OpenOptions::new()
-            .write(true)
-            .create(true)
-            .truncate(true)
-            .open(&probe);
+        let probed = OpenOptions::new().write(true).create(true).truncate(true).open(&probe);
         probed.map_err(|e| cannot_write(path, &e))?;
         fs::remove_file(&probe).map_err(|e| cannot_write(path, &e))?;
         Ok(folder)
@@ -146,11 +125,7 @@ impl Folder {
     pub fn fill(&self, contents: &[&[u8]]) -> Result<Vec<PathBuf>, Failure> {
         let mut made = unfilled();
         let paths: Vec<PathBuf> = self.files.iter().map(|f| self.path.join(f)).collect();
-        let files: Vec<(PathBuf, &[u8])> = paths
-            .iter()
-            .cloned()
-            .zip(contents.iter().copied())
-            .collect();
+        let files: Vec<(PathBuf, &[u8])> = paths.iter().cloned().zip(contents.iter().copied()).collect();
         write_all(&files)?;
         made.clear();
         Ok(paths)

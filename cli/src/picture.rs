@@ -24,8 +24,7 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
         .style(colour::style(&report.description))
         .footer(notes::notes(report).join(" "));
     for (i, (outcome, setting)) in outcomes.iter().zip(&report.settings).enumerate() {
-        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?
-            .with_pins(&scene.pins(columns))?;
+        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?.with_pins(&scene.pins(columns))?;
         let mut panel = Panel::new(notes::heading(setting.name), grid);
         for line in lines(setting, report.grid) {
             panel = panel.line(line);
@@ -46,17 +45,9 @@ fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
         (false, cut) => format!("K cut {:.0} %", 100.0 * cut),
     };
     [
-        format!(
-            "max {} %  p99 {} %",
-            number(stretch.max),
-            number(stretch.p99)
-        ),
+        format!("max {} %  p99 {} %", number(stretch.max), number(stretch.p99)),
         format!("away from pins {} %", number(stretch.ex_pin_max)),
         format!("{cut}  {:.1} ns/particle-step", s.ns_per_particle_step),
-        format!(
-            "{} substeps  {:.0} us/frame",
-            s.substeps,
-            notes::us_per_frame(s, grid)
-        ),
+        format!("{} substeps  {:.0} us/frame", s.substeps, notes::us_per_frame(s, grid)),
     ]
 }

@@ -15,9 +15,7 @@ impl Progress {
     pub fn new(settings: usize) -> Progress {
         let bar = ProgressBar::new(settings as u64 * PARTS);
         // a template that does not parse leaves the plain bar
-        if let Ok(style) =
-            ProgressStyle::with_template("{msg:18} [{bar:40}] {percent:>3} %  {elapsed}")
-        {
+        if let Ok(style) = ProgressStyle::with_template("{msg:18} [{bar:40}] {percent:>3} %  {elapsed}") {
             bar.set_style(style.progress_chars("=> "));
         }
         Progress { bar }

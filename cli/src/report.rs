@@ -22,12 +22,7 @@ pub struct Stiffness {
 
 impl From<[f32; 4]> for Stiffness {
     fn from([warp, weft, shear, bend]: [f32; 4]) -> Stiffness {
-        Stiffness {
-            warp,
-            weft,
-            shear,
-            bend,
-        }
+        Stiffness { warp, weft, shear, bend }
     }
 }
 
@@ -50,11 +45,7 @@ pub struct StretchLimits {
 
 impl From<[f32; 3]> for StretchLimits {
     fn from([warp, weft, diagonal]: [f32; 3]) -> StretchLimits {
-        StretchLimits {
-            warp,
-            weft,
-            diagonal,
-        }
+        StretchLimits { warp, weft, diagonal }
     }
 }
 
@@ -184,18 +175,9 @@ pub fn budget_name(budget: Budget) -> &'static str {
 
 impl Report {
     /// The report of a comparison.
-    pub fn new(
-        case: &Case,
-        reference: &Fabric,
-        info: &Info,
-        c: &Correction,
-        outcomes: &[Outcome],
-    ) -> Report {
+    pub fn new(case: &Case, reference: &Fabric, info: &Info, c: &Correction, outcomes: &[Outcome]) -> Report {
         let settings: Vec<Setting> = outcomes.iter().map(Setting::from).collect();
-        let reference_substeps = settings
-            .iter()
-            .find(|s| s.name == "reference")
-            .map(|s| s.substeps);
+        let reference_substeps = settings.iter().find(|s| s.name == "reference").map(|s| s.substeps);
         Report {
             scene: case.scene.name(),
             description: c.description.clone(),
@@ -224,12 +206,7 @@ impl Report {
 }
 
 fn net_share(settings: &[Setting]) -> Option<NetShare> {
-    let stretch = |name| {
-        settings
-            .iter()
-            .find(|s| s.name == name)
-            .map(|s| s.stretch_pct)
-    };
+    let stretch = |name| settings.iter().find(|s| s.name == name).map(|s| s.stretch_pct);
     let generated = stretch("generated")?;
     let minus = |other: StretchPct| Difference {
         max_points: generated.max - other.max,
@@ -249,12 +226,7 @@ mod tests {
     fn setting(name: &'static str, max: f64, ex_pin_max: f64) -> Setting {
         Setting {
             name,
-            stretch_pct: StretchPct {
-                max,
-                p99: 0.0,
-                mean: 0.0,
-                ex_pin_max,
-            },
+            stretch_pct: StretchPct { max, p99: 0.0, mean: 0.0, ex_pin_max },
             cut_fraction: 0.0,
             ns_per_particle_step: 0.0,
             finite: true,
@@ -268,10 +240,7 @@ mod tests {
 
     #[test]
     fn the_share_of_the_net_is_the_difference() {
-        let mut settings = vec![
-            setting("uniform_inertia", 3.0, 2.0),
-            setting("generated", 2.5, 2.25),
-        ];
+        let mut settings = vec![setting("uniform_inertia", 3.0, 2.0), setting("generated", 2.5, 2.25)];
         assert_eq!(net_share(&settings), None);
         settings.push(setting("analytic_inertia", 2.0, 2.0));
         settings.push(setting("reference", 1.5, 0.25));
@@ -284,11 +253,7 @@ mod tests {
 
     #[test]
     fn numbers_that_are_not_finite_are_null() {
-        let json =
-            serde_json::to_string(&setting("random", f64::INFINITY, 1.0)).expect("serialised");
-        assert!(
-            json.contains("\"max\":null") && json.contains("\"peak_stretch_pct\":null"),
-            "{json}"
-        );
+        let json = serde_json::to_string(&setting("random", f64::INFINITY, 1.0)).expect("serialised");
+        assert!(json.contains("\"max\":null") && json.contains("\"peak_stretch_pct\":null"), "{json}");
     }
 }

@@ -1,7 +1,7 @@
 use crate::budget::{self, BudgetReport};
 use crate::field::{self, FieldView};
 use crate::force::{Planes, Springs};
-use crate::layout::{Layout, PIN_NUMBERS, read, take, write};
+use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::math::round16;
 use crate::pins::Pins;
 use crate::{ClothDef, Error, Grid, Vector3, inertia};
@@ -53,7 +53,7 @@ impl<'a> Cloth<'a> {
     /// Numbers (f32) of memory that a cloth needs. Errors: those of [`ClothDef::check`].
     pub fn memory(grid: &Grid, def: &ClothDef) -> Result<usize, Error> {
         def.check()?;
-        Ok(Layout::new(grid, def)?.numbers())
+        Ok(Layout::new(grid, def).numbers())
     }
 
     /// Makes a cloth in the caller's block, flat and at rest. The block's content is overwritten.
@@ -61,10 +61,8 @@ impl<'a> Cloth<'a> {
     /// Errors: those of [`ClothDef::check`], [`Error::BlockTooSmall`].
     pub fn create(grid: &Grid, def: &ClothDef, block: &'a mut [f32]) -> Result<Cloth<'a>, Error> {
         def.check()?;
-        let layout = Layout::new(grid, def)?;
-        let mut rest = block
-            .get_mut(..layout.numbers())
-            .ok_or(Error::BlockTooSmall)?;
+        let layout = Layout::new(grid, def);
+        let mut rest = block.get_mut(..layout.numbers()).ok_or(Error::BlockTooSmall)?;
         rest.fill(0.0);
         let p = layout.plane;
         let when = |on: bool| if on { p } else { 0 };
@@ -74,24 +72,11 @@ impl<'a> Cloth<'a> {
             def: *def,
             layout,
             mass: budget::particle_mass(grid, def),
-            x: Planes {
-                x: take(b, p)?,
-                y: take(b, p)?,
-                z: take(b, p)?,
-            },
-            v: Planes {
-                x: take(b, p)?,
-                y: take(b, p)?,
-                z: take(b, p)?,
-            },
+            x: Planes { x: take(b, p)?, y: take(b, p)?, z: take(b, p)? },
+            v: Planes { x: take(b, p)?, y: take(b, p)?, z: take(b, p)? },
             good: take(b, 6 * p)?,
             inverse: take(b, p)?,
-            target: [
-                take(b, p)?,
-                take(b, p)?,
-                take(b, when(layout.shear))?,
-                take(b, when(layout.bend))?,
-            ],
+            target: [take(b, p)?, take(b, p)?, take(b, when(layout.shear))?, take(b, when(layout.bend))?],
             springs: Springs {
                 u: take(b, p)?,
                 v: take(b, p)?,
@@ -100,11 +85,7 @@ impl<'a> Cloth<'a> {
                 bend_u: take(b, when(layout.bend))?,
                 bend_v: take(b, when(layout.bend))?,
             },
-            pull: [
-                take(b, when(layout.pull))?,
-                take(b, when(layout.pull))?,
-                take(b, when(layout.pull))?,
-            ],
+            pull: [take(b, when(layout.pull))?, take(b, when(layout.pull))?, take(b, when(layout.pull))?],
             pins: Pins {
                 numbers: take(b, round16(PIN_NUMBERS * layout.max_pins))?,
                 count: 0,
@@ -183,16 +164,10 @@ impl<'a> Cloth<'a> {
     }
 
     /// The same from a function (channel, row, column) on another grid of rows x columns.
-    pub(crate) fn set_stiffness_by(
-        &mut self,
-        rows: usize,
-        columns: usize,
-        k: impl Fn(usize, usize, usize) -> f32,
-    ) {
+    pub(crate) fn set_stiffness_by(&mut self, rows: usize, columns: usize, k: impl Fn(usize, usize, usize) -> f32) {
         let to = (self.layout.rows, self.layout.columns);
         self.set_target(|row, column| {
-            [0, 1, 2, 3]
-                .map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
+            [0, 1, 2, 3].map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
         });
     }
 
@@ -229,18 +204,10 @@ impl<'a> Cloth<'a> {
         let l = self.layout;
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
-        former.copy_from_slice(self.inverse);
+        copy(former, self.inverse);
         let (pins, layout) = (&self.pins, &self.layout);
         let pinned = pins.iter().filter_map(|p| layout.place(p.particle).ok());
-        inertia::inverse_masses(
-            &self.grid,
-            &self.def,
-            &l,
-            self.mass,
-            pinned,
-            self.inverse,
-            scratch,
-        );
+        inertia::inverse_masses(&self.grid, &self.def, &l, self.mass, pinned, self.inverse, scratch);
         if keep_momentum {
             for row in 0..l.rows {
                 for column in 0..l.columns {
@@ -255,15 +222,8 @@ impl<'a> Cloth<'a> {
                 }
             }
         }
-        self.report = budget::project(
-            &self.grid,
-            &self.def,
-            &l,
-            &self.target,
-            self.inverse,
-            &mut self.springs,
-            scratch,
-        );
+        self.report =
+            budget::project(&self.grid, &self.def, &l, &self.target, self.inverse, &mut self.springs, scratch);
         self.stale = false;
     }
 
@@ -303,25 +263,20 @@ impl<'a> Cloth<'a> {
         self.set_position_at(at, p);
         self.set_velocity_at(at, [0.0; 3]);
         if let Ok(place) = self.pins.find(particle) {
-            self.pins.set(
-                place,
-                crate::pins::Pin {
-                    particle,
-                    from: p,
-                    to: p,
-                },
-            );
+            self.pins.set(place, crate::pins::Pin { particle, from: p, to: p });
         }
         Ok(())
     }
 
-    /// Sets the velocity of a particle in m/s; a pinned one keeps that of its pin.
+    /// Sets the velocity of a particle in m/s; a pinned one keeps that of its pin. A change of pins before it is settled
+    /// first, so that it does not rescale this velocity.
     ///
     /// Errors: [`Error::NoSuchParticle`], [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e6 m/s).
     pub fn set_velocity(&mut self, particle: usize, v_m_s: Vector3<f32>) -> Result<(), Error> {
         let at = self.layout.place(particle)?;
         check_reach(v_m_s.cast())?;
         if self.pins.find(particle).is_err() {
+            self.refresh(true);
             self.set_velocity_at(at, [v_m_s.x, v_m_s.y, v_m_s.z]);
         }
         Ok(())

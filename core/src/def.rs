@@ -40,7 +40,7 @@ pub struct ClothDef {
     pub gravity_m_s2: [f32; 3],
     /// Damping c in 1/s: F_damping = -c M v. At least 0, and c dt below 1. Default 2.
     pub damping_per_s: f32,
-    /// Speed limit as a fraction of the smallest rest length per substep; 0 = none. Default 0.25.
+    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
     pub speed_limit: f32,
     /// Whether a compressed spring may push with at most k times its length, which keeps crumpled cloth from exploding:
     /// the factor 1 - L0/l of eq. 1 is kept at -1 or above. Default true.
@@ -53,7 +53,7 @@ pub struct ClothDef {
     pub inertia_radius_m: f32,
     /// Largest q of the inertia field, 1 to 1e4. Default 32.
     pub inertia_max: f32,
-    /// Most pins at a time, at most the number of particles. 28 bytes each. Default 256.
+    /// Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256.
     pub max_pins: u32,
     /// Optional parts. Default none.
     pub features: Features,
@@ -110,10 +110,7 @@ impl ClothDef {
             self.inertia_max,
         ];
         let vectors = [self.gravity_m_s2, self.u_axis, self.v_axis];
-        if !scalars
-            .iter()
-            .chain(vectors.as_flattened())
-            .all(|x| x.is_finite())
+        if !scalars.iter().chain(vectors.as_flattened()).all(|x| x.is_finite())
             || !self.origin_m.iter().all(|x| x.is_finite())
         {
             return Err(Error::NotFinite);
@@ -132,6 +129,7 @@ impl ClothDef {
             || !(1.0..=1e4).contains(&self.inertia_max)
             || self.inertia_radius_m > 1e4
             || self.speed_limit > 1e6
+            || (self.speed_limit > 0.0 && self.speed_limit < 1e-6)
             || length(&self.gravity_m_s2) > 1e4
             || self.features.0 > Features::PULL.0
             || !axis(&self.u_axis)
@@ -146,20 +144,9 @@ impl ClothDef {
     /// Digest of what a snapshot depends on.
     pub(crate) fn digest(&self, h: &mut Hash64) {
         let f = |x: f32| x.to_bits();
-        h.words(&[
-            f(self.rate_hz),
-            self.substeps,
-            f(self.density_kg_m2),
-            f(self.damping_per_s),
-            f(self.speed_limit),
-        ]);
+        h.words(&[f(self.rate_hz), self.substeps, f(self.density_kg_m2), f(self.damping_per_s), f(self.speed_limit)]);
         h.words(&self.gravity_m_s2.map(f));
-        h.words(&[
-            self.compression_limit as u32,
-            self.budget as u32,
-            f(self.inertia_radius_m),
-            f(self.inertia_max),
-        ]);
+        h.words(&[self.compression_limit as u32, self.budget as u32, f(self.inertia_radius_m), f(self.inertia_max)]);
         h.words(&[self.features.0, self.max_pins]);
     }
 }
@@ -179,68 +166,14 @@ mod tests {
         let err = |d: ClothDef| d.check().unwrap_err();
         assert_eq!(err(ClothDef { rate_hz: 0.0, ..d }), Error::StepSize);
         assert_eq!(err(ClothDef { substeps: 0, ..d }), Error::StepSize);
-        assert_eq!(
-            err(ClothDef {
-                rate_hz: f32::NAN,
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                rate_hz: f32::INFINITY,
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                density_kg_m2: 0.0,
-                ..d
-            }),
-            Error::OutOfRange
-        );
-        assert_eq!(
-            err(ClothDef {
-                damping_per_s: -1.0,
-                ..d
-            }),
-            Error::Negative
-        );
-        assert_eq!(
-            err(ClothDef {
-                damping_per_s: 960.0,
-                ..d
-            }),
-            Error::Damping
-        );
-        assert_eq!(
-            err(ClothDef {
-                gravity_m_s2: [0.0, f32::NAN, 0.0],
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                u_axis: [0.0; 3],
-                ..d
-            }),
-            Error::OutOfRange
-        );
-        assert_eq!(
-            err(ClothDef {
-                origin_m: [f64::NAN, 0.0, 0.0],
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                features: Features(2),
-                ..d
-            }),
-            Error::OutOfRange
-        );
+        assert_eq!(err(ClothDef { rate_hz: f32::NAN, ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { rate_hz: f32::INFINITY, ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { density_kg_m2: 0.0, ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { damping_per_s: -1.0, ..d }), Error::Negative);
+        assert_eq!(err(ClothDef { damping_per_s: 960.0, ..d }), Error::Damping);
+        assert_eq!(err(ClothDef { gravity_m_s2: [0.0, f32::NAN, 0.0], ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { u_axis: [0.0; 3], ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { origin_m: [f64::NAN, 0.0, 0.0], ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { features: Features(2), ..d }), Error::OutOfRange);
     }
 }

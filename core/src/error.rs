@@ -17,7 +17,7 @@ pub enum Error {
     BadDefinition = -4,
     /// A grid side has fewer than 2 or more than 4096 particles.
     GridSize = -5,
-    /// A side length is not finite, not above 0, or above 10 km.
+    /// A side length is not finite, below 1e-6 m, or above 10 km.
     SideLength = -6,
     /// The frame rate is not within 1 to 10,000 Hz, or the substeps are not within 1 to 1,024: the step would be 0 or endless.
     StepSize = -7,
@@ -94,11 +94,9 @@ impl Error {
             Error::NullPointer => "a pointer is NULL",
             Error::Misaligned => "the memory block is not aligned as asked for",
             Error::BlockTooSmall => "the memory block is smaller than asked for",
-            Error::BadDefinition => {
-                "the definition was not made by its default function or is of another version"
-            }
+            Error::BadDefinition => "the definition was not made by its default function or is of another version",
             Error::GridSize => "each grid side needs 2 to 4096 particles",
-            Error::SideLength => "a side length must be above 0 and at most 10000 m",
+            Error::SideLength => "a side length must be 0.000001 to 10000 m",
             Error::StepSize => "the rate must be 1 to 10000 Hz and the substeps 1 to 1024",
             Error::NotFinite => "a number is NaN or infinite",
             Error::Negative => "a number that must not be negative is negative",

@@ -24,12 +24,7 @@ impl<'a> FieldView<'a> {
     /// Checks the shape (4 channels, or 1 with [`SINGLE_RATIOS`]) and every number.
     ///
     /// Errors: [`Error::GridSize`], [`Error::Shape`], [`Error::NotFinite`], [`Error::Negative`].
-    pub fn new(
-        channels: usize,
-        rows: usize,
-        columns: usize,
-        data: &'a [f32],
-    ) -> Result<Self, Error> {
+    pub fn new(channels: usize, rows: usize, columns: usize, data: &'a [f32]) -> Result<Self, Error> {
         let side = |n: usize| (2..=crate::Grid::MAX_SIDE as usize).contains(&n);
         if !side(rows) || !side(columns) {
             return Err(Error::GridSize);
@@ -43,36 +38,17 @@ impl<'a> FieldView<'a> {
         if data.iter().any(|k| *k < 0.0) {
             return Err(Error::Negative);
         }
-        Ok(FieldView {
-            channels,
-            rows,
-            columns,
-            data,
-        })
+        Ok(FieldView { channels, rows, columns, data })
     }
 
     /// The four channels at particle (row, column) of an m x n grid, bilinear between the field's own particles with the
     /// corners aligned.
     pub fn sample(&self, row: usize, column: usize, m: usize, n: usize) -> [f32; 4] {
         let value = |c: usize, row: usize, column: usize| {
-            self.data
-                .get((c * self.rows + row) * self.columns + column)
-                .copied()
-                .unwrap_or(0.0)
+            self.data.get((c * self.rows + row) * self.columns + column).copied().unwrap_or(0.0)
         };
-        let at = |c: usize| {
-            bilinear(
-                (self.rows, self.columns),
-                |r, k| value(c, r, k),
-                (row, column),
-                (m, n),
-            )
-        };
-        if self.channels == 1 {
-            SINGLE_RATIOS.map(|r| r * at(0))
-        } else {
-            [at(0), at(1), at(2), at(3)]
-        }
+        let at = |c: usize| bilinear((self.rows, self.columns), |r, k| value(c, r, k), (row, column), (m, n));
+        if self.channels == 1 { SINGLE_RATIOS.map(|r| r * at(0)) } else { [at(0), at(1), at(2), at(3)] }
     }
 }
 
@@ -86,17 +62,20 @@ pub fn bilinear(
 ) -> f32 {
     let (r0, r1, fr) = place(at.0, to.0, from.0);
     let (c0, c1, fc) = place(at.1, to.1, from.1);
-    let top = value(r0, c0) * (1.0 - fc) + value(r0, c1) * fc;
-    let bottom = value(r1, c0) * (1.0 - fc) + value(r1, c1) * fc;
-    top * (1.0 - fr) + bottom * fr
+    // in this form a constant stays that constant to the bit, and the largest f32 does not overflow
+    let lerp = |a: f32, b: f32, share: f32| a + (b - a) * share;
+    let top = lerp(value(r0, c0), value(r0, c1), fc);
+    let bottom = lerp(value(r1, c0), value(r1, c1), fc);
+    lerp(top, bottom, fr)
 }
 
 /// Where place `i` of `n` lies among `size` places with both ends aligned: the two neighbours and the share of the second.
 fn place(i: usize, n: usize, size: usize) -> (usize, usize, f32) {
-    let scaled = i * (size - 1);
-    let low = scaled / (n - 1);
-    let rest = scaled - low * (n - 1);
-    (low, (low + 1).min(size - 1), rest as f32 / (n - 1) as f32)
+    let (last, steps) = (size - 1, (n - 1).max(1));
+    let scaled = i * last;
+    let low = scaled / steps;
+    let rest = scaled - low * steps;
+    (low, (low + 1).min(last), rest as f32 / steps as f32)
 }
 
 #[cfg(test)]
@@ -114,10 +93,7 @@ mod tests {
         assert_eq!(f.sample(3, 1, 5, 3), [9.0, 109.0, 209.0, 309.0]);
         let s = f.sample(8, 8, 17, 17);
         for (c, v) in s.iter().enumerate() {
-            assert!(
-                (v - (100.0 * c as f32 + 2.0 * 2.0 + 3.0)).abs() < 1e-4,
-                "{v}"
-            );
+            assert!((v - (100.0 * c as f32 + 2.0 * 2.0 + 3.0)).abs() < 1e-4, "{v}");
         }
     }
 

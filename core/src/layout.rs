@@ -21,14 +21,11 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub fn new(grid: &Grid, def: &ClothDef) -> Result<Layout, Error> {
+    pub fn new(grid: &Grid, def: &ClothDef) -> Layout {
         let (rows, columns) = (grid.rows(), grid.columns());
-        if def.max_pins as usize > rows * columns {
-            return Err(Error::OutOfRange);
-        }
         let width = round16(columns);
         let stride = width + 16;
-        Ok(Layout {
+        Layout {
             rows,
             columns,
             width,
@@ -37,8 +34,9 @@ impl Layout {
             shear: grid.has_shear(),
             bend: grid.has_bend(),
             pull: def.features.contains(Features::PULL),
-            max_pins: def.max_pins as usize,
-        })
+            // the default asks for more than a small grid has particles
+            max_pins: (def.max_pins as usize).min(rows * columns),
+        }
     }
 
     /// Channels of the target field and planes of springs: 2 structural of each, then shear 1 and 2, bend 1 and 2.
@@ -74,17 +72,25 @@ impl Layout {
         if particle >= self.rows * self.columns {
             return Err(Error::NoSuchParticle);
         }
-        Ok(self.at(particle / self.columns, particle % self.columns))
+        // max: a grid has columns, but only so does the compiler know that nothing is divided by zero
+        let columns = self.columns.max(1);
+        Ok(self.at(particle / columns, particle % columns))
     }
 }
 
 /// Takes the first `n` numbers off a block.
 pub(crate) fn take<'a>(block: &mut &'a mut [f32], n: usize) -> Result<&'a mut [f32], Error> {
-    let (head, tail) = core::mem::take(block)
-        .split_at_mut_checked(n)
-        .ok_or(Error::BlockTooSmall)?;
+    let (head, tail) = core::mem::take(block).split_at_mut_checked(n).ok_or(Error::BlockTooSmall)?;
     *block = tail;
     Ok(head)
+}
+
+/// Copies as many numbers as both have.
+pub(crate) fn copy(to: &mut [f32], from: &[f32]) {
+    let n = to.len().min(from.len());
+    if let (Some(to), Some(from)) = (to.get_mut(..n), from.get(..n)) {
+        to.copy_from_slice(from);
+    }
 }
 
 /// The numbers of a row of a plane, empty where the plane has no such row (a family that is off).

@@ -1,1 +1,8 @@
 //! Training: the GAN of Wang and Wang (2021) with a differentiable cloth, and the ONNX export.
+
+pub mod cloth;
+pub mod export;
+pub mod gan;
+pub mod image;
+pub mod nets;
+pub mod words;

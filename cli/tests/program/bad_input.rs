@@ -46,11 +46,7 @@ fn arguments() {
     refused(home.path(), &["drape"], "DESCRIPTION");
     refused(home.path(), &["correct", "denim"], "--out");
     // damping times dt must stay below 1
-    refused(
-        home.path(),
-        &["drape", "denim", "--rate", "1", "--substeps", "1"],
-        "damping",
-    );
+    refused(home.path(), &["drape", "denim", "--rate", "1", "--substeps", "1"], "damping");
 }
 
 #[test]
@@ -73,31 +69,16 @@ fn outputs_that_cannot_be_written() {
     let home = home();
     fs::write(home.path().join("file"), "x").expect("written");
     fs::create_dir_all(home.path().join("taken/drape.png")).expect("made");
-    let drape = |out| {
-        refused(
-            home.path(),
-            &["drape", "denim", "--out", out],
-            "cannot write",
-        )
-    };
+    let drape = |out| refused(home.path(), &["drape", "denim", "--out", out], "cannot write");
     drape("file");
     drape("file/deeper");
     drape("taken");
-    let correct = |out| {
-        refused(
-            home.path(),
-            &["correct", "denim", "--out", out],
-            "cannot write",
-        )
-    };
+    let correct = |out| refused(home.path(), &["correct", "denim", "--out", out], "cannot write");
     correct("taken");
     correct("missing/f");
     correct("file/f");
     correct("..");
-    assert_eq!(
-        fs::read_to_string(home.path().join("file")).expect("read"),
-        "x"
-    );
+    assert_eq!(fs::read_to_string(home.path().join("file")).expect("read"), "x");
     assert_eq!(entries(&home.path().join("taken")), ["drape.png"]);
 }
 
@@ -105,8 +86,7 @@ fn outputs_that_cannot_be_written() {
 fn generator_files() {
     let home = home();
     let whole = fs::read(generator()).expect("the generator");
-    let write =
-        |name: &str, bytes: &[u8]| fs::write(home.path().join(name), bytes).expect("written");
+    let write = |name: &str, bytes: &[u8]| fs::write(home.path().join(name), bytes).expect("written");
     write("empty", b"");
     write("text", b"heavy blue denim\n".repeat(100).as_slice());
     write("png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR");
@@ -115,34 +95,22 @@ fn generator_files() {
     }
     write("last", &whole[..whole.len() - 1]);
     // a field file is no generator
-    crate::run::succeeds(
-        home.path(),
-        &["correct", "denim", "--grid", "4x4", "--out", "field"],
-    );
+    crate::run::succeeds(home.path(), &["correct", "denim", "--grid", "4x4", "--out", "field"]);
     // the metadata says 16 tokens, the graph too: 17 is a lie
     let key = b"taut.tokens";
-    let at = whole
-        .windows(key.len())
-        .position(|w| w == key)
-        .expect("the key");
+    let at = whole.windows(key.len()).position(|w| w == key).expect("the key");
     let mut lie = whole.clone();
     let value = at + key.len() + 2;
     assert_eq!(&lie[value..value + 2], b"16");
     lie[value + 1] = b'7';
     write("lie", &lie);
 
-    for file in [
-        "missing", ".", "empty", "text", "png", "cut10", "cut50", "cut99", "last", "field", "lie",
-    ] {
+    for file in ["missing", ".", "empty", "text", "png", "cut10", "cut50", "cut99", "last", "field", "lie"] {
         let named = if file == "." { "cannot read" } else { file };
         refused(home.path(), &["info", file], named);
     }
     for file in ["missing", "cut50", "lie"] {
         refused(home.path(), &["drape", "denim", "--model", file], file);
-        refused(
-            home.path(),
-            &["correct", "denim", "--out", "f", "--model", file],
-            file,
-        );
+        refused(home.path(), &["correct", "denim", "--out", "f", "--model", file], file);
     }
 }

@@ -4,31 +4,12 @@ use serde_json::Value;
 
 use crate::run::{Run, entries, home, succeeds};
 
-const SMALL: [&str; 8] = [
-    "--grid",
-    "8x10",
-    "--substeps",
-    "4",
-    "--seconds",
-    "0.5",
-    "--size",
-    "1x0.8",
-];
-const NAMES: [&str; 7] = [
-    "reference",
-    "random",
-    "uniform",
-    "analytic",
-    "uniform_inertia",
-    "analytic_inertia",
-    "generated",
-];
+const SMALL: [&str; 8] = ["--grid", "8x10", "--substeps", "4", "--seconds", "0.5", "--size", "1x0.8"];
+const NAMES: [&str; 7] =
+    ["reference", "random", "uniform", "analytic", "uniform_inertia", "analytic_inertia", "generated"];
 
 fn drape(folder: &std::path::Path, description: &str, more: &[&str]) -> Run {
-    succeeds(
-        folder,
-        &[&["drape", description], &SMALL[..], more].concat(),
-    )
+    succeeds(folder, &[&["drape", description], &SMALL[..], more].concat())
 }
 
 fn report(run: &Run) -> Value {
@@ -36,19 +17,13 @@ fn report(run: &Run) -> Value {
 }
 
 fn hash(report: &Value, setting: usize) -> &str {
-    report["settings"][setting]["state_hash"]
-        .as_str()
-        .expect("a hash")
+    report["settings"][setting]["state_hash"].as_str().expect("a hash")
 }
 
 #[test]
 fn the_report_has_the_promised_keys() {
     let home = home();
-    let run = drape(
-        home.path(),
-        "heavy blue denim",
-        &["--json", "--density", "0.3", "--seed", "7"],
-    );
+    let run = drape(home.path(), "heavy blue denim", &["--json", "--density", "0.3", "--seed", "7"]);
     let r = report(&run);
     assert_eq!(r["scene"], "hang2");
     assert_eq!(r["description"], "heavy blue denim");
@@ -71,26 +46,15 @@ fn the_report_has_the_promised_keys() {
         assert!(s["ns_per_particle_step"].as_f64() > Some(0.0), "{s}");
         assert_eq!(s["finite"], true);
         let hash = s["state_hash"].as_str().expect("text");
-        assert!(
-            hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()),
-            "{hash}"
-        );
+        assert!(hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()), "{hash}");
         assert!(s["peak_stretch_pct"].is_f64() && s["rms_speed_m_s"].is_f64());
     }
-    let size: Vec<f64> = r["size_m"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .filter_map(Value::as_f64)
-        .collect();
+    let size: Vec<f64> = r["size_m"].as_array().expect("a list").iter().filter_map(Value::as_f64).collect();
     assert!(size[0] == 1.0 && (size[1] - 0.8).abs() < 1e-6, "{size:?}");
     assert_eq!(r["reference_fabric"]["kind"], "denim");
     assert_eq!(r["reference_fabric"]["measured"], true);
     assert!(r["reference_substeps"].as_u64() >= Some(4));
-    assert!(
-        settings[0]["cut_fraction"].as_f64() < Some(1e-6),
-        "the reference is not cut"
-    );
+    assert!(settings[0]["cut_fraction"].as_f64() < Some(1e-6), "the reference is not cut");
     for other in ["uniform_inertia", "analytic_inertia"] {
         assert!(r["net_share"][other]["max_points"].is_f64());
         assert!(r["net_share"][other]["ex_pin_max_points"].is_f64());
@@ -112,47 +76,24 @@ fn the_report_has_the_promised_keys() {
 #[test]
 fn without_json_the_table_is_on_stdout() {
     let home = home();
-    let run = drape(
-        home.path(),
-        "heavy blue denim",
-        &["--out", "a/b", "--scene", "edge"],
-    );
+    let run = drape(home.path(), "heavy blue denim", &["--out", "a/b", "--scene", "edge"]);
     let stdout = &run.stdout;
-    for text in [
-        "heavy blue denim",
-        "edge, 8 x 10",
-        "max %",
-        "analytic + inertia",
-        "net's own share",
-        "report.json",
-    ] {
+    for text in ["heavy blue denim", "edge, 8 x 10", "max %", "analytic + inertia", "net's own share", "report.json"] {
         assert!(stdout.contains(text), "{text}: {stdout}");
     }
     assert_eq!(run.stderr, "");
-    assert_eq!(
-        entries(&home.path().join("a/b")),
-        ["drape.png", "report.json"]
-    );
+    assert_eq!(entries(&home.path().join("a/b")), ["drape.png", "report.json"]);
 }
 
 #[test]
 fn the_same_words_and_seed_give_the_same_states() {
     let home = home();
-    let one =
-        |words, more: &[&str]| report(&drape(home.path(), words, &[&["--json"], more].concat()));
-    let (a, b, other) = (
-        one("silk", &[]),
-        one("silk", &[]),
-        one("silk", &["--seed", "1"]),
-    );
+    let one = |words, more: &[&str]| report(&drape(home.path(), words, &[&["--json"], more].concat()));
+    let (a, b, other) = (one("silk", &[]), one("silk", &[]), one("silk", &["--seed", "1"]));
     for i in 0..NAMES.len() {
         assert_eq!(hash(&a, i), hash(&b, i), "{}", NAMES[i]);
     }
-    assert_ne!(
-        hash(&a, 6),
-        hash(&other, 6),
-        "another seed is another field"
-    );
+    assert_ne!(hash(&a, 6), hash(&other, 6), "another seed is another field");
     assert_ne!(hash(&a, 1), hash(&other, 1), "and another random K");
     let stiff = one("heavy blue denim", &[]);
     assert_ne!(hash(&a, 0), hash(&stiff, 0));
@@ -166,19 +107,10 @@ fn the_budget_and_the_step_matter() {
     let home = home();
     let max = |more: &[&str]| {
         let r = report(&drape(home.path(), "denim", &[&["--json"], more].concat()));
-        r["settings"][2]["stretch_pct"]["max"]
-            .as_f64()
-            .expect("a number")
+        r["settings"][2]["stretch_pct"]["max"].as_f64().expect("a number")
     };
-    let (tuned, certified, fine) = (
-        max(&[]),
-        max(&["--budget", "certified"]),
-        max(&["--rate", "240"]),
-    );
-    assert!(
-        certified > tuned && tuned > fine,
-        "{certified} {tuned} {fine}"
-    );
+    let (tuned, certified, fine) = (max(&[]), max(&["--budget", "certified"]), max(&["--rate", "240"]));
+    assert!(certified > tuned && tuned > fine, "{certified} {tuned} {fine}");
 }
 
 #[test]
@@ -189,10 +121,7 @@ fn unknown_words_are_named_and_skipped() {
     assert_eq!(r["unknown_words"], serde_json::json!(["qzxvw", "bqqzt"]));
     let warning = run.stderr.lines().next().expect("a line");
     assert!(warning.starts_with("taut: warning:"), "{warning}");
-    assert!(
-        warning.contains("qzxvw") && warning.contains("bqqzt"),
-        "{warning}"
-    );
+    assert!(warning.contains("qzxvw") && warning.contains("bqqzt"), "{warning}");
     let long = vec!["denim"; 17].join(" ");
     let run = drape(home.path(), &long, &[]);
     assert!(run.stderr.contains("only the first 16"), "{}", run.stderr);
@@ -205,10 +134,7 @@ fn a_fabric_without_a_name_is_compared_with_its_own_medians() {
     let reference = &r["reference_fabric"];
     assert_eq!(reference["kind"], "none named: the generator's own medians");
     assert_eq!(reference["measured"], false);
-    assert_eq!(
-        reference["stiffness_n_per_m"],
-        r["generator"]["median_stiffness_n_per_m"]
-    );
+    assert_eq!(reference["stiffness_n_per_m"], r["generator"]["median_stiffness_n_per_m"]);
 }
 
 #[test]
@@ -216,16 +142,9 @@ fn a_full_folder_is_written_over_and_other_files_stay() {
     let home = home();
     std::fs::write(home.path().join("notes.txt"), "mine").expect("written");
     for seed in ["1", "2"] {
-        let run = drape(
-            home.path(),
-            "denim",
-            &["--out", ".", "--json", "--seed", seed],
-        );
+        let run = drape(home.path(), "denim", &["--out", ".", "--json", "--seed", seed]);
         let file = std::fs::read_to_string(home.path().join("report.json")).expect("read");
         assert_eq!(file, run.stdout);
     }
-    assert_eq!(
-        entries(home.path()),
-        ["drape.png", "notes.txt", "report.json"]
-    );
+    assert_eq!(entries(home.path()), ["drape.png", "notes.txt", "report.json"]);
 }

@@ -12,41 +12,22 @@ fn an_interrupt_leaves_nothing() {
     use std::time::{Duration, Instant};
     let home = home();
     let mut child = Command::new(env!("CARGO_BIN_EXE_taut"))
-        .args([
-            "drape",
-            "denim",
-            "--grid",
-            "64x64",
-            "--seconds",
-            "3600",
-            "--out",
-            "a/b",
-        ])
+        .args(["drape", "denim", "--grid", "64x64", "--seconds", "3600", "--out", "a/b"])
         .current_dir(home.path())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
     let start = Instant::now();
     while !home.path().join("a/b").exists() {
-        assert!(
-            start.elapsed() < Duration::from_secs(120),
-            "the folder is not made"
-        );
+        assert!(start.elapsed() < Duration::from_secs(120), "the folder is not made");
         std::thread::sleep(Duration::from_millis(20));
     }
-    let kill = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.expect("kill runs").success());
     let status = child.wait().expect("it ends");
     assert_eq!(status.code(), Some(130));
     let mut stderr = String::new();
-    child
-        .stderr
-        .take()
-        .expect("piped")
-        .read_to_string(&mut stderr)
-        .expect("UTF-8");
+    child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");
     assert_eq!(stderr, "taut: interrupted\n");
     assert!(entries(home.path()).is_empty());
 }
@@ -64,11 +45,6 @@ fn a_closed_pipe_is_no_error() {
     drop(child.stdout.take());
     let status = child.wait().expect("it ends");
     let mut stderr = String::new();
-    child
-        .stderr
-        .take()
-        .expect("piped")
-        .read_to_string(&mut stderr)
-        .expect("UTF-8");
+    child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");
     assert_eq!((status.code(), stderr.as_str()), (Some(0), ""));
 }

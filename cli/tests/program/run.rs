@@ -12,11 +12,8 @@ pub struct Run {
 
 /// Runs the program in a folder.
 pub fn taut(folder: &Path, args: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_taut"))
-        .args(args)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_taut")).args(args).current_dir(folder).output().expect("the program starts");
     Run {
         code: output.status.code(),
         stdout: String::from_utf8(output.stdout).expect("UTF-8"),
@@ -39,10 +36,7 @@ pub fn refuses(folder: &Path, args: &[&str]) -> String {
     assert_eq!(run.stderr.lines().count(), 1, "{args:?}: {}", run.stderr);
     let line = run.stderr.trim_end();
     assert!(line.starts_with("taut: "), "{line}");
-    assert!(
-        !line.contains("internal error") && !line.contains("panicked"),
-        "{line}"
-    );
+    assert!(!line.contains("internal error") && !line.contains("panicked"), "{line}");
     line.into()
 }
 
@@ -50,12 +44,7 @@ pub fn refuses(folder: &Path, args: &[&str]) -> String {
 pub fn entries(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .expect("listed")
-        .map(|e| {
-            e.expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();
     names

@@ -1,0 +1,241 @@
+//! The structures of the header. They are plain numbers without padding, so every bit pattern is a valid value and what
+//! is wrong with it can be answered.
+
+/// Most particles of a grid side.
+pub const TAUT_MAX_SIDE: u32 = 4096;
+
+/// Structural springs to the four neighbours: warp along v, weft along u. Always on.
+pub const TAUT_FAMILY_STRUCTURAL: u32 = 1;
+/// Shear springs to the four diagonal neighbours.
+pub const TAUT_FAMILY_SHEAR: u32 = 2;
+/// Bend springs to the particles two cells away.
+pub const TAUT_FAMILY_BEND: u32 = 4;
+/// All spring families.
+pub const TAUT_FAMILY_ALL: u32 = 7;
+
+/// No optional parts.
+pub const TAUT_FEATURE_NONE: u32 = 0;
+/// Forces on single particles (taut_cloth_add_force).
+pub const TAUT_FEATURE_PULL: u32 = 1;
+
+/// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
+/// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+pub const TAUT_STEP_NON_FINITE: u32 = 1;
+
+const _: () = {
+    assert!(TAUT_MAX_SIDE == taut_core::Grid::MAX_SIDE);
+    assert!(TAUT_FAMILY_STRUCTURAL == taut_core::Families::STRUCTURAL.0);
+    assert!(TAUT_FAMILY_SHEAR == taut_core::Families::SHEAR.0);
+    assert!(TAUT_FAMILY_BEND == taut_core::Families::BEND.0);
+    assert!(TAUT_FAMILY_ALL == taut_core::Families::ALL.0);
+    assert!(TAUT_FEATURE_NONE == taut_core::Features::NONE.0);
+    assert!(TAUT_FEATURE_PULL == taut_core::Features::PULL.0);
+    assert!(TAUT_STEP_NON_FINITE == taut_core::StepFlags::NON_FINITE.0);
+    assert!(Budget::TAUT_BUDGET_CERTIFIED as u32 == taut_core::Budget::Certified as u32);
+    assert!(Budget::TAUT_BUDGET_TUNED as u32 == taut_core::Budget::Tuned as u32);
+};
+
+/// How the stiffness is cut to what the step can carry. All four channels of a particle are cut alike.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Budget {
+    /// A bound that holds for every shape of the cloth: stable from any start, at about half the stiffness of
+    /// TAUT_BUDGET_TUNED.
+    TAUT_BUDGET_CERTIFIED = 0,
+    /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
+    TAUT_BUDGET_TUNED = 1,
+}
+
+/// What a grid is made of. Comes from taut_grid_def_default(), then change what you need.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct GridDef {
+    /// Bytes of this structure. Set by taut_grid_def_default().
+    pub size: u32,
+    /// Shows that the definition came from taut_grid_def_default().
+    pub cookie: u32,
+    /// Particles along v, 2 to 4096. Default 32.
+    pub rows: u32,
+    /// Particles along u, 2 to 4096. Default 32.
+    pub columns: u32,
+    /// Side length along u in m, above 0, at most 10,000. Default 1.
+    pub width_m: f32,
+    /// Side length along v in m, above 0, at most 10,000. Default 1.
+    pub height_m: f32,
+    /// Spring families, TAUT_FAMILY_* or-ed; the structural ones must be on. A family that is off costs no memory and no
+    /// time. Default TAUT_FAMILY_ALL.
+    pub families: u32,
+}
+
+/// What a cloth is made of beside its grid. Comes from taut_cloth_def_default(), then change what you need. SI units; no
+/// axis is "up".
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ClothDef {
+    /// Bytes of this structure. Set by taut_cloth_def_default().
+    pub size: u32,
+    /// Shows that the definition came from taut_cloth_def_default().
+    pub cookie: u32,
+    /// World position of the cloth's local frame in m, each at most 1e12 in size: where particle 0 starts. Default 0, 0, 0.
+    pub origin_m: [f64; 3],
+    /// Frames per second, 1 to 10,000. One taut_cloth_step is one frame. Fixed for the life of the cloth. Default 60.
+    pub rate_hz: f32,
+    /// Equal substeps of a frame, 1 to 1,024. dt = 1 / (rate_hz * substeps). More substeps carry stiffer cloth. Default 16.
+    pub substeps: u32,
+    /// Mass per area in kg/m^2, 1e-6 to 1e6; taut_field_info tells that of a baked field. Default 0.2.
+    pub density_kg_m2: f32,
+    /// Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
+    pub damping_per_s: f32,
+    /// Speed limit as a fraction of the smallest rest length per substep, 0 to 1e6; 0 = none. Default 0.25.
+    pub speed_limit: f32,
+    /// 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
+    /// exploding; 0: off. Default 1.
+    pub compression_limit: u32,
+    /// A taut_budget. Default TAUT_BUDGET_TUNED.
+    pub budget: u32,
+    /// Radius of the inertia field in m, 0 to 1e4; 0 = none. A particle closer to a pin than this has more inertia (radius /
+    /// distance times its mass, its weight unchanged), so that the cloth can be stiff at the pins, where it stretches most,
+    /// at no cost in dt. Default 0.
+    pub inertia_radius_m: f32,
+    /// Largest factor of the inertia field, 1 to 1e4. Default 32.
+    pub inertia_max: f32,
+    /// Most pins at a time, 0 to the number of particles. 28 bytes each. Default 256, or the number of particles if that is
+    /// less.
+    pub max_pins: u32,
+    /// Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
+    pub features: u32,
+    /// Gravity in m/s^2, at most 1e4 in size. Default 0, -9.81, 0.
+    pub gravity_m_s2: [f32; 3],
+    /// Direction of u (along a row) at the start, 1e-3 to 1e3 long. Default 1, 0, 0.
+    pub u_axis: [f32; 3],
+    /// Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
+    pub v_axis: [f32; 3],
+}
+
+/// Memory that a call asks for.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Memory {
+    /// Bytes.
+    pub size: usize,
+    /// Alignment of the first byte, a power of two.
+    pub align: usize,
+}
+
+/// Sizes of a grid.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Counts {
+    /// Particles along v.
+    pub rows: u32,
+    /// Particles along u.
+    pub columns: u32,
+    /// Particles, rows times columns. Particle (row, column) has the index row * columns + column.
+    pub particles: u32,
+    /// Springs of all families that are on.
+    pub springs: u32,
+}
+
+/// What the budget made of the stiffness.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct BudgetReport {
+    /// Length of a substep in s.
+    pub dt_s: f32,
+    /// Largest substep in s that would have kept the whole stiffness; infinite where there is none to keep.
+    pub max_dt_s: f32,
+    /// Share of the stiffness that was cut, 0 to 1.
+    pub cut_fraction: f32,
+    /// Inertia that the inertia field adds, as a share of the mass of the free particles.
+    pub inertia_added: f32,
+}
+
+/// What a baked field tells about its fabric beside the stiffness.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Fabric {
+    /// Mass per area in kg/m^2.
+    pub density_kg_m2: f32,
+    /// Bending rigidity of a hinge in N m.
+    pub hinge_rigidity_n_m: f32,
+    /// Largest stretch of the fabric in use along the warp, as a fraction.
+    pub limit_warp: f32,
+    /// The same along the weft.
+    pub limit_weft: f32,
+    /// The same along the diagonal.
+    pub limit_diagonal: f32,
+}
+
+/// What a baked field is.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct FieldInfo {
+    /// The seed it was generated with.
+    pub seed: u64,
+    /// Hash of the description it was generated from.
+    pub description_hash: u64,
+    /// Rows of the field. It need not be those of the grid: the field is resampled.
+    pub rows: u32,
+    /// Columns of the field.
+    pub columns: u32,
+    /// What it tells about the fabric.
+    pub fabric: Fabric,
+    /// 0.
+    pub reserved: u32,
+}
+
+/// Strain of the structural springs: (length - rest length) / rest length, so 0.05 is stretched by 5 %.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Strain {
+    /// Largest over all structural springs.
+    pub largest: f32,
+    /// Mean over all structural springs.
+    pub mean: f32,
+}
+
+/// The positions of a cloth without a copy: particle (row, column) is number row * row_stride + column of x, y and z, in m
+/// in the local frame; add origin_m for the world. Valid until the next call that is handed the cloth without const.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PositionView {
+    /// World position of the local frame in m.
+    pub origin_m: [f64; 3],
+    /// x of each particle in m.
+    pub x: *const f32,
+    /// y of each particle in m.
+    pub y: *const f32,
+    /// z of each particle in m.
+    pub z: *const f32,
+    /// Numbers from a row to the next; more than columns.
+    pub row_stride: usize,
+    /// Particles along v.
+    pub rows: usize,
+    /// Particles along u.
+    pub columns: usize,
+}
+
+impl From<taut_core::baked::Fabric> for Fabric {
+    fn from(f: taut_core::baked::Fabric) -> Fabric {
+        let [limit_warp, limit_weft, limit_diagonal] = f.stretch_limits;
+        Fabric {
+            density_kg_m2: f.density_kg_m2,
+            hinge_rigidity_n_m: f.hinge_rigidity_n_m,
+            limit_warp,
+            limit_weft,
+            limit_diagonal,
+        }
+    }
+}
+
+impl From<taut_core::BudgetReport> for BudgetReport {
+    fn from(r: taut_core::BudgetReport) -> BudgetReport {
+        BudgetReport {
+            dt_s: r.dt_s,
+            max_dt_s: r.max_dt_s,
+            cut_fraction: r.cut_fraction,
+            inertia_added: r.inertia_added,
+        }
+    }
+}

@@ -1,0 +1,684 @@
+// taut: mass-spring cloth for games that does not stretch like rubber.
+//
+// Generated from ffi/ by cbindgen; do not edit.
+//
+// CONVENTIONS
+//
+// Memory. Nothing here allocates, and there are no globals. A grid and a cloth live in blocks that you hand in: ask
+// taut_grid_memory and taut_cloth_memory how large and how aligned, or use TAUT_GRID_BYTES and TAUT_CLOTH_BYTES for static
+// storage. The block is yours: keep it where it is while the handle is used; there is nothing to destroy. Arrays, files and
+// snapshots that you lend are used during the call only, and must not overlap the block of the cloth.
+//
+// Definitions come from taut_*_def_default(); then change the fields that you need. They begin with their size and a
+// cookie, by which a definition that was filled in otherwise or belongs to another version is found.
+//
+// Results. Every call that can fail answers with a taut_result: TAUT_OK is 0, everything else is negative and has changed
+// and written nothing. Outputs come last and are only written on success. NULL and misaligned pointers are answered, never
+// followed; so is a handle whose block does not hold (any more) what it should. A pointer to memory that is not yours
+// cannot be found out. Nothing panics, aborts or calls back.
+//
+// Threads. One cloth belongs to one thread at a time. Calls with a `const taut_cloth *` only read and may run at the same
+// time as each other; calls with a `taut_cloth *` need it for themselves. Different cloths are independent. A grid never
+// changes and may be used by any number of threads.
+//
+// Determinism. The same calls give the same bits on every machine. A call that computes sets the default floating-point
+// environment (no flush-to-zero, round to nearest) and gives back the one that it found.
+//
+// Units are SI: m, s, kg, N. World positions are double; inside a cloth positions are float in a local frame that starts at
+// origin_m. No axis is "up". Particle (row, column) has the index row * columns + column; u runs along the columns, v along
+// the rows; warp runs along v, weft along u.
+//
+// docs/c-api.md has the longer story, examples/c/drape.c a program.
+
+
+#ifndef TAUT_H
+#define TAUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The version of this header as one number, for taut_check_version.
+#define TAUT_VERSION_ID \
+    (((uint32_t)TAUT_VERSION_MAJOR << 24) | ((uint32_t)TAUT_VERSION_MINOR << 16) | (uint32_t)TAUT_VERSION_PATCH)
+
+// Bytes of a cloth's block as a constant expression, for static storage: the same number that taut_cloth_memory gives for a
+// grid of rows x columns with these TAUT_FAMILY_* and a definition with these TAUT_FEATURE_* and max_pins.
+#define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
+    ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
+     (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
+                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))))
+
+// Parts of TAUT_CLOTH_BYTES.
+#define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
+#define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
+#define TAUT_CLOTH_PLANES_(families, features)                                                               \
+    ((size_t)17 + (((families) & TAUT_FAMILY_SHEAR) ? 3 : 0) + (((families) & TAUT_FAMILY_BEND) ? 3 : 0) +   \
+     (((features) & TAUT_FEATURE_PULL) ? 3 : 0))
+
+
+// Version of this header and library, as in 1.2.3.
+#define TAUT_VERSION_MAJOR 0
+
+// Second number of the version. While the first one is 0, a change of it may break programs.
+#define TAUT_VERSION_MINOR 1
+
+// Third number of the version.
+#define TAUT_VERSION_PATCH 0
+
+// Most particles of a grid side.
+#define TAUT_MAX_SIDE 4096
+
+// Structural springs to the four neighbours: warp along v, weft along u. Always on.
+#define TAUT_FAMILY_STRUCTURAL 1
+
+// Shear springs to the four diagonal neighbours.
+#define TAUT_FAMILY_SHEAR 2
+
+// Bend springs to the particles two cells away.
+#define TAUT_FAMILY_BEND 4
+
+// All spring families.
+#define TAUT_FAMILY_ALL 7
+
+// No optional parts.
+#define TAUT_FEATURE_NONE 0
+
+// Forces on single particles (taut_cloth_add_force).
+#define TAUT_FEATURE_PULL 1
+
+// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
+// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+#define TAUT_STEP_NON_FINITE 1
+
+// Bytes of the block of a grid, on every target.
+#define TAUT_GRID_BYTES 64
+
+// Alignment of the block of a grid in bytes.
+#define TAUT_GRID_ALIGN 8
+
+// Bytes at the start of a cloth's block that its numbers follow, on every target.
+#define TAUT_CLOTH_HEADER_BYTES 1024
+
+// Alignment of the block of a cloth in bytes.
+#define TAUT_CLOTH_ALIGN 64
+
+// What a call answers: 0 is success, everything else is negative. A number keeps its meaning for good; new ones are only
+// appended. A call that answers with an error has changed nothing and written nothing.
+enum taut_result
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Done.
+    TAUT_OK = 0,
+    // A pointer is NULL.
+    TAUT_ERROR_NULL_POINTER = -1,
+    // A pointer or the block of memory is not aligned as was asked for.
+    TAUT_ERROR_MISALIGNED = -2,
+    // The block of memory is smaller than was asked for.
+    TAUT_ERROR_BLOCK_TOO_SMALL = -3,
+    // A definition was not made by its default function, or belongs to another version (its size or cookie is wrong).
+    TAUT_ERROR_BAD_DEFINITION = -4,
+    // A grid side has fewer than 2 or more than 4096 particles.
+    TAUT_ERROR_GRID_SIZE = -5,
+    // A side length is not finite, not above 0, or above 10 km.
+    TAUT_ERROR_SIDE_LENGTH = -6,
+    // The frame rate is not within 1 to 10,000 Hz, or the substeps are not within 1 to 1,024.
+    TAUT_ERROR_STEP_SIZE = -7,
+    // A number that must be finite is NaN or infinite.
+    TAUT_ERROR_NOT_FINITE = -8,
+    // A number that must not be negative is negative.
+    TAUT_ERROR_NEGATIVE = -9,
+    // A number is outside the range that its documentation gives.
+    TAUT_ERROR_OUT_OF_RANGE = -10,
+    // There is no particle of this index.
+    TAUT_ERROR_NO_SUCH_PARTICLE = -11,
+    // The particle is not pinned.
+    TAUT_ERROR_NOT_PINNED = -12,
+    // More pins than max_pins of the definition.
+    TAUT_ERROR_TOO_MANY_PINS = -13,
+    // The feature was not asked for in the definition, so it has no memory.
+    TAUT_ERROR_FEATURE_OFF = -14,
+    // The stiffness was never set.
+    TAUT_ERROR_NO_STIFFNESS = -15,
+    // An array has another shape than the call needs.
+    TAUT_ERROR_SHAPE = -16,
+    // The bytes end early.
+    TAUT_ERROR_TRUNCATED = -17,
+    // The bytes are not of the expected kind.
+    TAUT_ERROR_WRONG_KIND = -18,
+    // The bytes were written by a version that this one cannot read.
+    TAUT_ERROR_UNSUPPORTED_VERSION = -19,
+    // The bytes were changed: their checksum does not match.
+    TAUT_ERROR_CHECKSUM = -20,
+    // The snapshot belongs to a cloth of another grid or definition.
+    TAUT_ERROR_FOREIGN = -21,
+    // The damping is too strong for the step: damping times dt must stay below 1.
+    TAUT_ERROR_DAMPING = -22,
+    // The program was compiled with the header of another version.
+    TAUT_ERROR_VERSION_MISMATCH = -23,
+    // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
+    // on exist in C only.
+    TAUT_ERROR_BAD_HANDLE = -100,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_result taut_result;
+#else
+typedef int32_t taut_result;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How the stiffness is cut to what the step can carry. All four channels of a particle are cut alike.
+enum taut_budget
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // A bound that holds for every shape of the cloth: stable from any start, at about half the stiffness of
+    // TAUT_BUDGET_TUNED.
+    TAUT_BUDGET_CERTIFIED = 0,
+    // 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
+    TAUT_BUDGET_TUNED = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_budget taut_budget;
+#else
+typedef uint32_t taut_budget;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
+// nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
+// Different cloths never share anything.
+typedef struct taut_cloth taut_cloth;
+
+// The topology of a cloth: which particles exist and which springs join them. It never changes, and any number of threads
+// may use it at a time. A cloth copies what it needs, so the grid's block may go when its cloths are made.
+typedef struct taut_grid taut_grid;
+
+// What a grid is made of. Comes from taut_grid_def_default(), then change what you need.
+typedef struct {
+    // Bytes of this structure. Set by taut_grid_def_default().
+    uint32_t size;
+    // Shows that the definition came from taut_grid_def_default().
+    uint32_t cookie;
+    // Particles along v, 2 to 4096. Default 32.
+    uint32_t rows;
+    // Particles along u, 2 to 4096. Default 32.
+    uint32_t columns;
+    // Side length along u in m, above 0, at most 10,000. Default 1.
+    float width_m;
+    // Side length along v in m, above 0, at most 10,000. Default 1.
+    float height_m;
+    // Spring families, TAUT_FAMILY_* or-ed; the structural ones must be on. A family that is off costs no memory and no
+    // time. Default TAUT_FAMILY_ALL.
+    uint32_t families;
+} taut_grid_def;
+
+// Memory that a call asks for.
+typedef struct {
+    // Bytes.
+    size_t size;
+    // Alignment of the first byte, a power of two.
+    size_t align;
+} taut_memory;
+
+// Sizes of a grid.
+typedef struct {
+    // Particles along v.
+    uint32_t rows;
+    // Particles along u.
+    uint32_t columns;
+    // Particles, rows times columns. Particle (row, column) has the index row * columns + column.
+    uint32_t particles;
+    // Springs of all families that are on.
+    uint32_t springs;
+} taut_counts;
+
+// What a cloth is made of beside its grid. Comes from taut_cloth_def_default(), then change what you need. SI units; no
+// axis is "up".
+typedef struct {
+    // Bytes of this structure. Set by taut_cloth_def_default().
+    uint32_t size;
+    // Shows that the definition came from taut_cloth_def_default().
+    uint32_t cookie;
+    // World position of the cloth's local frame in m, each at most 1e12 in size: where particle 0 starts. Default 0, 0, 0.
+    double origin_m[3];
+    // Frames per second, 1 to 10,000. One taut_cloth_step is one frame. Fixed for the life of the cloth. Default 60.
+    float rate_hz;
+    // Equal substeps of a frame, 1 to 1,024. dt = 1 / (rate_hz * substeps). More substeps carry stiffer cloth. Default 16.
+    uint32_t substeps;
+    // Mass per area in kg/m^2, 1e-6 to 1e6; taut_field_info tells that of a baked field. Default 0.2.
+    float density_kg_m2;
+    // Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
+    float damping_per_s;
+    // Speed limit as a fraction of the smallest rest length per substep, 0 to 1e6; 0 = none. Default 0.25.
+    float speed_limit;
+    // 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
+    // exploding; 0: off. Default 1.
+    uint32_t compression_limit;
+    // A taut_budget. Default TAUT_BUDGET_TUNED.
+    uint32_t budget;
+    // Radius of the inertia field in m, 0 to 1e4; 0 = none. A particle closer to a pin than this has more inertia (radius /
+    // distance times its mass, its weight unchanged), so that the cloth can be stiff at the pins, where it stretches most,
+    // at no cost in dt. Default 0.
+    float inertia_radius_m;
+    // Largest factor of the inertia field, 1 to 1e4. Default 32.
+    float inertia_max;
+    // Most pins at a time, 0 to the number of particles. 28 bytes each. Default 256, or the number of particles if that is
+    // less.
+    uint32_t max_pins;
+    // Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
+    uint32_t features;
+    // Gravity in m/s^2, at most 1e4 in size. Default 0, -9.81, 0.
+    float gravity_m_s2[3];
+    // Direction of u (along a row) at the start, 1e-3 to 1e3 long. Default 1, 0, 0.
+    float u_axis[3];
+    // Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
+    float v_axis[3];
+} taut_cloth_def;
+
+// What a baked field tells about its fabric beside the stiffness.
+typedef struct {
+    // Mass per area in kg/m^2.
+    float density_kg_m2;
+    // Bending rigidity of a hinge in N m.
+    float hinge_rigidity_n_m;
+    // Largest stretch of the fabric in use along the warp, as a fraction.
+    float limit_warp;
+    // The same along the weft.
+    float limit_weft;
+    // The same along the diagonal.
+    float limit_diagonal;
+} taut_fabric;
+
+// What a baked field is.
+typedef struct {
+    // The seed it was generated with.
+    uint64_t seed;
+    // Hash of the description it was generated from.
+    uint64_t description_hash;
+    // Rows of the field. It need not be those of the grid: the field is resampled.
+    uint32_t rows;
+    // Columns of the field.
+    uint32_t columns;
+    // What it tells about the fabric.
+    taut_fabric fabric;
+    // 0.
+    uint32_t reserved;
+} taut_field;
+
+// What the budget made of the stiffness.
+typedef struct {
+    // Length of a substep in s.
+    float dt_s;
+    // Largest substep in s that would have kept the whole stiffness; infinite where there is none to keep.
+    float max_dt_s;
+    // Share of the stiffness that was cut, 0 to 1.
+    float cut_fraction;
+    // Inertia that the inertia field adds, as a share of the mass of the free particles.
+    float inertia_added;
+} taut_budget_report;
+
+// The positions of a cloth without a copy: particle (row, column) is number row * row_stride + column of x, y and z, in m
+// in the local frame; add origin_m for the world. Valid until the next call that is handed the cloth without const.
+typedef struct {
+    // World position of the local frame in m.
+    double origin_m[3];
+    // x of each particle in m.
+    const float *x;
+    // y of each particle in m.
+    const float *y;
+    // z of each particle in m.
+    const float *z;
+    // Numbers from a row to the next; more than columns.
+    size_t row_stride;
+    // Particles along v.
+    size_t rows;
+    // Particles along u.
+    size_t columns;
+} taut_position_view;
+
+// Strain of the structural springs: (length - rest length) / rest length, so 0.05 is stretched by 5 %.
+typedef struct {
+    // Largest over all structural springs.
+    float largest;
+    // Mean over all structural springs.
+    float mean;
+} taut_strain;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library that runs, in the form of TAUT_VERSION_ID: major << 24 | minor << 16 | patch.
+//
+// Threads: any.
+uint32_t taut_version(void);
+
+// Whether a program that was compiled with this header may use the library that it found at run time: call
+// taut_check_version(TAUT_VERSION_ID) first. Before 1.0 the first two numbers must be equal; from then on the first one
+// must be equal and the library's second one must not be smaller.
+//
+// Errors: TAUT_ERROR_VERSION_MISMATCH; taut_version() tells what was found.
+// Threads: any.
+taut_result taut_check_version(uint32_t version_id);
+
+// The name of a result as it stands in this header ("TAUT_ERROR_GRID_SIZE"), "TAUT_ERROR_UNKNOWN" for a number that is
+// no result. Never NULL; the text lives as long as the library.
+//
+// Threads: any.
+const char *taut_result_name(int32_t result);
+
+// One line in English that says what a result means. Never NULL; the text lives as long as the library.
+//
+// Threads: any.
+const char *taut_result_message(int32_t result);
+
+// The default grid: 32 x 32 particles, 1 m x 1 m, all spring families.
+//
+// Threads: any.
+taut_grid_def taut_grid_def_default(void);
+
+// Memory that a grid needs: never more than TAUT_GRID_BYTES, aligned to TAUT_GRID_ALIGN.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_DEFINITION, TAUT_ERROR_GRID_SIZE,
+// TAUT_ERROR_SIDE_LENGTH, TAUT_ERROR_OUT_OF_RANGE (families).
+// Threads: any.
+taut_result taut_grid_memory(const taut_grid_def *def, taut_memory *out);
+
+// Makes a grid in the caller's block of block_size bytes. The block is the caller's to keep and to free; there is nothing
+// to destroy.
+//
+// Errors: those of taut_grid_memory, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: any.
+taut_result taut_grid_create(const taut_grid_def *def,
+                             void *block,
+                             size_t block_size,
+                             taut_grid **out);
+
+// Rows, columns, particles and springs of a grid.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: any.
+taut_result taut_grid_counts(const taut_grid *from, taut_counts *out);
+
+// 64-bit digest of what a grid was made of: two grids are the same topology when their digests agree. The same on every
+// machine.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: any.
+taut_result taut_grid_digest(const taut_grid *from, uint64_t *out);
+
+// The default cloth for a grid: 60 Hz x 16 substeps, 0.2 kg/m^2, hanging from particle 0 in the direction -y. The grid
+// tells how many pins there can be; it may be NULL, which means a grid of 256 particles or more.
+//
+// Threads: any.
+taut_cloth_def taut_cloth_def_default(const taut_grid *on);
+
+// Memory that a cloth needs. For static storage TAUT_CLOTH_BYTES tells the same at compile time.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE (grid), TAUT_ERROR_BAD_DEFINITION,
+// TAUT_ERROR_STEP_SIZE, TAUT_ERROR_DAMPING, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
+// Threads: any.
+taut_result taut_cloth_memory(const taut_grid *on, const taut_cloth_def *def, taut_memory *out);
+
+// Makes a cloth in the caller's block of block_size bytes: flat, at rest, nothing pinned, without stiffness. The content of
+// the block does not matter. The block is the caller's to keep until the cloth is no longer used, and then to free; there
+// is nothing to destroy. It must stay where it is: a copy of it is no cloth (use a snapshot).
+//
+// Errors: those of taut_cloth_memory, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BLOCK_TOO_SMALL. Then the block is as it was.
+// Threads: any.
+taut_result taut_cloth_create(const taut_grid *on,
+                              const taut_cloth_def *def,
+                              void *block,
+                              size_t block_size,
+                              taut_cloth **out);
+
+// Back to the start: flat, at rest, nothing pinned, step 0. The stiffness stays.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: changes the cloth.
+taut_result taut_cloth_reset(taut_cloth *cloth);
+
+// Checks a baked field file of size bytes and tells what it is: so the density is known before the cloth is made.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_TRUNCATED, TAUT_ERROR_WRONG_KIND,
+// TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_NEGATIVE.
+// Threads: any.
+taut_result taut_field_info(const void *data, size_t size, taut_field *out);
+
+// Sets one stiffness for the whole cloth, in N/m, each at least 0: warp (along v), weft (along u), shear, bend. What the
+// step cannot carry is cut by the budget, with the ratios kept.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_NEGATIVE. Then the former stiffness stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_stiffness_uniform(taut_cloth *cloth,
+                                             float warp_n_m,
+                                             float weft_n_m,
+                                             float shear_n_m,
+                                             float bend_n_m);
+
+// Sets the stiffness field: channels * rows * columns numbers in N/m, each at least 0, as [channel][row][column], at the
+// particles; a spring has the mean of its two ends. 4 channels are warp, weft, shear, bend; 1 channel stands for all four in
+// the ratios 1, 1, 0.3, 0.02. Rows and columns, 2 to 4096 each, need not be those of the grid: the field is resampled.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE
+// (channels), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE. Then the former stiffness stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_stiffness_field(taut_cloth *cloth,
+                                           uint32_t channels,
+                                           uint32_t rows,
+                                           uint32_t columns,
+                                           const float *data);
+
+// Sets the stiffness from a baked field file of size bytes, resampled where its grid is another. What the file tells about
+// the fabric goes to out_fabric, which may be NULL.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, and those of taut_field_info. Then the
+// former stiffness stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
+                                      const void *data,
+                                      size_t size,
+                                      taut_fabric *out_fabric);
+
+// What the budget makes of the stiffness with the pins as they are: told before the first step, and kept.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
+// Threads: changes the cloth.
+taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
+
+// Pins a particle where it is. One that is pinned already stays as it is.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_TOO_MANY_PINS.
+// Threads: changes the cloth.
+taut_result taut_cloth_pin(taut_cloth *cloth, uint32_t particle);
+
+// Moves a pin: at the end of the next frame it is at world_m (x, y, z in m), and on the way there it is interpolated over
+// the substeps. Without a new call it then stays.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_NOT_PINNED, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's origin).
+// Threads: changes the cloth.
+taut_result taut_cloth_pin_move(taut_cloth *cloth,
+                                uint32_t particle,
+                                const double world_m[3]);
+
+// Frees a pinned particle; it keeps the velocity of its pin.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_NOT_PINNED.
+// Threads: changes the cloth.
+taut_result taut_cloth_unpin(taut_cloth *cloth, uint32_t particle);
+
+// Number of pins.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out);
+
+// Puts a particle somewhere, at rest; a pinned one together with its pin. local_m is x, y, z in m in the cloth's local
+// frame (the world less origin_m).
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m along an axis).
+// Threads: changes the cloth.
+taut_result taut_cloth_set_position(taut_cloth *cloth, uint32_t particle, const float local_m[3]);
+
+// Puts all particles somewhere, at rest, pinned ones together with their pins. local_m holds x, y, z of each of the count
+// particles in m in the cloth's local frame, particle after particle; count is the number of particles of the grid. All or
+// nothing.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (count),
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m along an axis).
+// Threads: changes the cloth.
+taut_result taut_cloth_set_positions(taut_cloth *cloth,
+                                     uint32_t count,
+                                     const float *local_m);
+
+// Sets the velocity of a particle, x, y, z in m/s; a pinned one keeps that of its pin.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
+// Threads: changes the cloth.
+taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particle, const float v_m_s[3]);
+
+// Adds a force on a particle, x, y, z in N, which acts during the next frame. Needs TAUT_FEATURE_PULL.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
+// TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
+// Threads: changes the cloth.
+taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
+
+// Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
+// calls give the same bits on every machine, whatever floating-point modes the engine has set.
+//
+// out_flags, which may be NULL, tells what happened: 0, or TAUT_STEP_* or-ed.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
+// Threads: changes the cloth.
+taut_result taut_cloth_step(taut_cloth *cloth, uint32_t *out_flags);
+
+// Steps count frames, 0 or more; pin targets and forces belong to the first. It ends early after a frame that was taken back
+// (TAUT_STEP_NON_FINITE); taut_cloth_step_index tells how far it came.
+//
+// out_flags, which may be NULL, tells what happened: 0, or TAUT_STEP_* or-ed.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
+// Threads: changes the cloth.
+taut_result taut_cloth_step_many(taut_cloth *cloth,
+                                 uint32_t count,
+                                 uint32_t *out_flags);
+
+// Frames stepped since the creation, the last reset, or those of the snapshot that was restored.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_step_index(const taut_cloth *cloth, uint64_t *out);
+
+// The positions without a copy.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_positions(const taut_cloth *cloth, taut_position_view *out);
+
+// Copies the world positions in m as three doubles per particle, in the order of the particles. out has out_size bytes;
+// stride is the bytes from a particle to the next, at least 24. Bytes between are left alone, and out need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: reads the cloth.
+taut_result taut_cloth_copy_positions_f64(const taut_cloth *cloth,
+                                          void *out,
+                                          size_t out_size,
+                                          size_t stride);
+
+// Copies the positions as seen from base_m, a point of the world in m (the camera, or 0, 0, 0), as three floats per
+// particle in m, in the order of the particles: so a vertex buffer stays exact far from the world's origin. out has
+// out_size bytes; stride is the bytes from a particle to the next, at least 12. Bytes between are left alone, and out need
+// not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, base_m), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE
+// (base_m), TAUT_ERROR_SHAPE (stride), TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: reads the cloth.
+taut_result taut_cloth_copy_positions_f32(const taut_cloth *cloth,
+                                          const double base_m[3],
+                                          void *out,
+                                          size_t out_size,
+                                          size_t stride);
+
+// Copies the velocities in m/s as three floats per particle, in the order of the particles. out has out_size bytes; stride
+// is the bytes from a particle to the next, at least 12. Bytes between are left alone, and out need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: reads the cloth.
+taut_result taut_cloth_copy_velocities_f32(const taut_cloth *cloth,
+                                           void *out,
+                                           size_t out_size,
+                                           size_t stride);
+
+// Strain of the structural springs as they are now. Takes time in proportion to the particles.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_strain(const taut_cloth *cloth, taut_strain *out);
+
+// Kinetic energy in J, with the inertia of the inertia field. Takes time in proportion to the particles.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_kinetic_energy(const taut_cloth *cloth, double *out_j);
+
+// Bytes of a snapshot of the cloth as it is now. It grows with the pins and with pending forces.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_snapshot_size(const taut_cloth *cloth, size_t *out);
+
+// Bytes that every snapshot of this cloth fits in, however many pins and forces it will have.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_snapshot_size_max(const taut_cloth *cloth, size_t *out);
+
+// Writes the state (positions, velocities, pins, pending forces, step index) into out, which has out_size bytes and need not
+// be aligned. Every machine writes and reads the same bytes. Stiffness and definition are left out: they do not change by
+// stepping. out_written, which may be NULL, gets the number of bytes.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, out_written), TAUT_ERROR_BAD_HANDLE,
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: changes the cloth (it settles what a change of pins does to the inertia).
+taut_result taut_cloth_snapshot(taut_cloth *cloth,
+                                void *out,
+                                size_t out_size,
+                                size_t *out_written);
+
+// Reads a state back from size bytes, which need not be aligned. The whole snapshot is checked before anything is changed.
+// Going on from it gives the bits that it gave the first time, provided that the stiffness is the same.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_TRUNCATED,
+// TAUT_ERROR_WRONG_KIND, TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_FOREIGN, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NO_SUCH_PARTICLE. Then the cloth is as it was.
+// Threads: changes the cloth.
+taut_result taut_cloth_restore(taut_cloth *cloth,
+                               const void *data,
+                               size_t size);
+
+// 64-bit hash of the state: two machines that play in lockstep compare it.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: changes the cloth (it settles what a change of pins does to the inertia).
+taut_result taut_cloth_state_hash(taut_cloth *cloth, uint64_t *out);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* TAUT_H */

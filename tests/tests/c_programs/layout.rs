@@ -1,0 +1,211 @@
+//! Sizes, offsets, values, names and defaults in C are those in Rust.
+
+use std::fmt::Write;
+use std::mem::{offset_of, size_of};
+
+use taut::{Cloth, ClothDef, Error, Features, Grid, GridDef};
+
+use crate::library::run_c;
+
+/// The structures as the library has them. The library itself cannot be linked from Rust.
+#[allow(dead_code, reason = "only the layout is looked at")]
+#[path = "../../../ffi/src/types.rs"]
+mod types;
+
+/// The static assertions about a structure.
+macro_rules! structure {
+    ($text:expr, $rust:ty, $c:literal, $($field:ident),+) => {{
+        writeln!($text, "_Static_assert(sizeof({}) == {}, \"size of {}\");", $c, size_of::<$rust>(), $c).unwrap();
+        let mut size = 0;
+        $(
+            let (c, field) = ($c, stringify!($field));
+            writeln!($text, "_Static_assert(offsetof({c}, {field}) == {}, \"{c}.{field}\");", offset_of!($rust, $field))
+                .unwrap();
+            let field_size = size_of_field(|s: &$rust| &raw const s.$field);
+            writeln!($text, "_Static_assert(sizeof((({c} *)0)->{field}) == {field_size}, \"{c}.{field}\");").unwrap();
+            size += field_size;
+        )+
+        // padding would mean bytes that nobody sets; and a field that is not listed here would show as padding
+        assert_eq!(size, size_of::<$rust>(), "{}", $c);
+    }};
+}
+
+fn size_of_field<S, F>(_: impl Fn(&S) -> *const F) -> usize {
+    size_of::<F>()
+}
+
+/// NotFinite becomes TAUT_ERROR_NOT_FINITE.
+fn c_name(error: Error) -> String {
+    let mut name = String::from("TAUT_ERROR");
+    for letter in format!("{error:?}").chars() {
+        if letter.is_ascii_uppercase() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_uppercase());
+    }
+    name
+}
+
+#[test]
+fn structures_and_values_are_those_of_rust() {
+    let mut text = String::from(
+        "#include <stdio.h>\n#include <string.h>\n#include \"taut.h\"\n\
+         #define REQUIRE(c) do { if (!(c)) { printf(\"%s\\n\", #c); failed = 1; } } while (0)\n",
+    );
+    let t = &mut text;
+    structure!(t, types::GridDef, "taut_grid_def", size, cookie, rows, columns, width_m, height_m, families);
+    structure!(
+        t,
+        types::ClothDef,
+        "taut_cloth_def",
+        size,
+        cookie,
+        origin_m,
+        rate_hz,
+        substeps,
+        density_kg_m2,
+        damping_per_s,
+        speed_limit,
+        compression_limit,
+        budget,
+        inertia_radius_m,
+        inertia_max,
+        max_pins,
+        features,
+        gravity_m_s2,
+        u_axis,
+        v_axis
+    );
+    structure!(t, types::Memory, "taut_memory", size, align);
+    structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
+    structure!(t, types::BudgetReport, "taut_budget_report", dt_s, max_dt_s, cut_fraction, inertia_added);
+    structure!(
+        t,
+        types::Fabric,
+        "taut_fabric",
+        density_kg_m2,
+        hinge_rigidity_n_m,
+        limit_warp,
+        limit_weft,
+        limit_diagonal
+    );
+    structure!(t, types::FieldInfo, "taut_field", seed, description_hash, rows, columns, fabric, reserved);
+    structure!(t, types::Strain, "taut_strain", largest, mean);
+    structure!(t, types::PositionView, "taut_position_view", origin_m, x, y, z, row_stride, rows, columns);
+    for error in Error::ALL {
+        let name = c_name(error);
+        writeln!(t, "_Static_assert({name} == {}, \"{name}\");", error.code()).unwrap();
+    }
+    for (name, value) in [
+        ("TAUT_OK", 0),
+        ("TAUT_ERROR_BAD_HANDLE", -100),
+        ("TAUT_BUDGET_CERTIFIED", taut::Budget::Certified as i64),
+        ("TAUT_BUDGET_TUNED", taut::Budget::Tuned as i64),
+        ("TAUT_FAMILY_ALL", i64::from(taut::Families::ALL.0)),
+        ("TAUT_FEATURE_PULL", i64::from(Features::PULL.0)),
+        ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
+        ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
+        ("(sizeof(taut_result))", 4),
+        ("(sizeof(taut_budget))", 4),
+    ] {
+        writeln!(t, "_Static_assert({name} == {value}, \"{name}\");").unwrap();
+    }
+
+    t.push_str("int main(void)\n{\n    int failed = 0;\n");
+    for error in Error::ALL {
+        let (name, message) = (c_name(error), error.message());
+        writeln!(t, "    REQUIRE(!strcmp(taut_result_name({name}), \"{name}\"));").unwrap();
+        writeln!(t, "    REQUIRE(!strcmp(taut_result_message({name}), \"{message}\"));").unwrap();
+    }
+    t.push_str(
+        "    REQUIRE(!strcmp(taut_result_name(TAUT_OK), \"TAUT_OK\"));\n\
+         \x20   REQUIRE(!strcmp(taut_result_name(TAUT_ERROR_BAD_HANDLE), \"TAUT_ERROR_BAD_HANDLE\"));\n\
+         \x20   REQUIRE(!strcmp(taut_result_name(1), \"TAUT_ERROR_UNKNOWN\"));\n\
+         \x20   REQUIRE(!strcmp(taut_result_name(-2147483647 - 1), \"TAUT_ERROR_UNKNOWN\"));\n\
+         \x20   REQUIRE(taut_result_message(-24)[0] != 0);\n",
+    );
+    writeln!(t, "    REQUIRE(taut_version() == TAUT_VERSION_ID);").unwrap();
+    defaults(t);
+    t.push_str("    return failed;\n}\n");
+    assert_eq!(run_c(t, &[]), "");
+}
+
+/// The definitions start as those of core do.
+fn defaults(t: &mut String) {
+    let g = GridDef::default();
+    writeln!(t, "    taut_grid_def g = taut_grid_def_default();").unwrap();
+    let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == {value:?}f);").unwrap();
+    equal("(float)g.rows", g.rows.into());
+    equal("(float)g.columns", g.columns.into());
+    equal("g.width_m", g.width_m.into());
+    equal("g.height_m", g.height_m.into());
+    equal("(float)g.families", g.families.0.into());
+    writeln!(t, "    taut_cloth_def d = taut_cloth_def_default(NULL);").unwrap();
+    let d = ClothDef::default();
+    let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == (float){value:?});").unwrap();
+    equal("d.rate_hz", d.rate_hz.into());
+    equal("(float)d.substeps", d.substeps.into());
+    equal("d.density_kg_m2", d.density_kg_m2.into());
+    equal("d.damping_per_s", d.damping_per_s.into());
+    equal("d.speed_limit", d.speed_limit.into());
+    equal("(float)d.compression_limit", d.compression_limit.into());
+    equal("(float)d.budget", f64::from(d.budget as u32));
+    equal("d.inertia_radius_m", d.inertia_radius_m.into());
+    equal("d.inertia_max", d.inertia_max.into());
+    equal("(float)d.max_pins", d.max_pins.into());
+    equal("(float)d.features", d.features.0.into());
+    for i in 0..3 {
+        equal(&format!("(float)d.origin_m[{i}]"), d.origin_m[i]);
+        equal(&format!("d.gravity_m_s2[{i}]"), d.gravity_m_s2[i].into());
+        equal(&format!("d.u_axis[{i}]"), d.u_axis[i].into());
+        equal(&format!("d.v_axis[{i}]"), d.v_axis[i].into());
+    }
+}
+
+#[test]
+fn the_macro_for_static_storage_is_the_query() {
+    let mut text = String::from(
+        "#include <stdio.h>\n#include \"taut.h\"\n\
+         static int row(uint32_t m, uint32_t n, uint32_t families, uint32_t features, uint32_t pins, size_t bytes)\n\
+         {\n\
+         \x20   static _Alignas(TAUT_GRID_ALIGN) char block[TAUT_GRID_BYTES];\n\
+         \x20   taut_grid_def g = taut_grid_def_default();\n\
+         \x20   g.rows = m; g.columns = n; g.families = families;\n\
+         \x20   taut_grid *grid;\n\
+         \x20   if (taut_grid_create(&g, block, sizeof block, &grid)) return 1;\n\
+         \x20   taut_cloth_def d = taut_cloth_def_default(grid);\n\
+         \x20   d.features = features; d.max_pins = pins;\n\
+         \x20   taut_memory memory;\n\
+         \x20   if (taut_cloth_memory(grid, &d, &memory)) return 1;\n\
+         \x20   if (memory.align != TAUT_CLOTH_ALIGN || memory.size != bytes ||\n\
+         \x20       TAUT_CLOTH_BYTES(m, n, families, features, pins) != bytes) {\n\
+         \x20       printf(\"%u x %u, %u, %u, %u: %zu, %zu, %zu\\n\", m, n, families, features, pins, memory.size, bytes,\n\
+         \x20              (size_t)TAUT_CLOTH_BYTES(m, n, families, features, pins));\n\
+         \x20       return 1;\n\
+         \x20   }\n\
+         \x20   return 0;\n\
+         }\n\
+         int main(void)\n{\n    int failed = 0;\n",
+    );
+    for (rows, columns) in [(2, 2), (3, 16), (17, 15), (32, 32), (33, 1), (128, 64), (4096, 4096)] {
+        let columns = columns.max(2);
+        for families in [1, 3, 5, 7] {
+            for features in [0, 1] {
+                for max_pins in [0, 1, 3, rows.min(columns)] {
+                    let grid =
+                        Grid::new(&GridDef { rows, columns, families: taut::Families(families), ..GridDef::default() })
+                            .unwrap();
+                    let def = ClothDef { features: Features(features), max_pins, ..ClothDef::default() };
+                    let bytes = 1024 + 4 * Cloth::memory(&grid, &def).unwrap();
+                    writeln!(
+                        text,
+                        "    failed |= row({rows}, {columns}, {families}, {features}, {max_pins}, {bytes}u);"
+                    )
+                    .unwrap();
+                }
+            }
+        }
+    }
+    text.push_str("    return failed;\n}\n");
+    assert_eq!(run_c(&text, &[]), "");
+}

@@ -1,0 +1,188 @@
+use serde::{Deserialize, Serialize};
+
+use super::TrainError;
+use crate::image::Channel;
+
+/// Steps of each stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StageSteps {
+    /// Steps of regression on the field.
+    pub matching: usize,
+    /// Steps of regression on positions and stretch.
+    pub positions: usize,
+    /// Steps of the adversarial game.
+    pub adversarial: usize,
+}
+
+impl StageSteps {
+    /// All steps.
+    pub fn total(&self) -> usize {
+        self.matching + self.positions + self.adversarial
+    }
+}
+
+/// Everything that a training run depends on beside the word table; saved beside the weights, its digest goes into the
+/// generator file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrainConfig {
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Base width of the generator (16: 3.8 million weights).
+    pub generator_width: usize,
+    /// Base width of the discriminator.
+    pub discriminator_width: usize,
+    /// Whether the discriminator sees the description (off in the paper).
+    pub conditional: bool,
+    /// Channels of the pictures.
+    pub picture: Vec<Channel>,
+    /// Particles along each side of the cloth in training.
+    pub grid: usize,
+    /// Fabrics of the training set; each hangs in two scenes.
+    pub fabrics: usize,
+    /// Fabrics of the evaluation set, drawn apart.
+    pub evaluation_fabrics: usize,
+    /// Batch size; the paper's is 32.
+    pub batch: usize,
+    /// Steps of the stages.
+    pub steps: StageSteps,
+    /// Adam's step size of the first stage.
+    pub matching_rate: f64,
+    /// Adam's step size of the others; the paper's is 1e-4.
+    pub learning_rate: f64,
+    /// Adam's first momentum; the paper's is 0.9.
+    pub beta1: f32,
+    /// An epoch is this many pictures: the size of the paper's training set.
+    pub epoch_pictures: usize,
+    /// The step size is halved after this many epochs; the paper's is 3.
+    pub halve_every_epochs: usize,
+    /// Weight of the adversarial loss (alpha of eq. 21).
+    pub alpha: f64,
+    /// Weight of the L2 loss (beta of eq. 21).
+    pub beta: f64,
+    /// phi of eq. 18, which the paper does not give.
+    pub phi: f64,
+    /// Weight of the paired picture loss; 0 in the paper.
+    pub paired: f64,
+    /// Weight of the prior that keeps the field near what the words mean, so the ratios of its channels; 0 in the paper.
+    pub prior: f64,
+    /// Weight of the positions in the second stage, per m^2.
+    pub position_weight: f64,
+    /// Weight of the stretch in the second stage.
+    pub stretch_weight: f64,
+    /// How much the noise varies ln(K) over a piece of fabric.
+    pub variation: f64,
+    /// White Gaussian noise on the real pictures as a share of the range, at least and at most: the paper's 1 to 5 %.
+    pub picture_noise: [f64; 2],
+    /// Substeps of a 60 Hz frame that the cloth is trained at; the last does not clamp most fabrics.
+    pub substeps: Vec<u32>,
+    /// Largest norm of the generator's gradient.
+    pub gradient_clip: f32,
+    /// Steps between evaluations, checkpoints and picture sheets.
+    pub report_every: usize,
+}
+
+impl Default for TrainConfig {
+    fn default() -> Self {
+        TrainConfig {
+            seed: 1,
+            generator_width: 16,
+            discriminator_width: 16,
+            conditional: true,
+            picture: vec![Channel::Checker, Channel::Silhouette],
+            grid: 16,
+            fabrics: 72,
+            evaluation_fabrics: 8,
+            batch: 32,
+            steps: StageSteps { matching: 500, positions: 100, adversarial: 100 },
+            matching_rate: 1e-3,
+            learning_rate: 1e-4,
+            beta1: 0.9,
+            epoch_pictures: 4615,
+            halve_every_epochs: 3,
+            alpha: 1.5,
+            beta: 0.1,
+            phi: 1e-3,
+            paired: 2.0,
+            prior: 2.0,
+            position_weight: 1e3,
+            stretch_weight: 30.0,
+            variation: 0.12,
+            picture_noise: [0.01, 0.05],
+            substeps: vec![8, 16, 48],
+            gradient_clip: 1.0,
+            report_every: 25,
+        }
+    }
+}
+
+impl TrainConfig {
+    /// A run of a minute or two that goes through every stage: for tests and for a first look.
+    pub fn quick() -> TrainConfig {
+        TrainConfig {
+            generator_width: 4,
+            discriminator_width: 4,
+            grid: 8,
+            fabrics: 6,
+            evaluation_fabrics: 2,
+            batch: 4,
+            steps: StageSteps { matching: 6, positions: 3, adversarial: 3 },
+            report_every: 4,
+            ..TrainConfig::default()
+        }
+    }
+
+    /// The paper's own recipe: a discriminator that does not see the words, no paired term, no prior, no regression.
+    pub fn paper() -> TrainConfig {
+        let ours = TrainConfig::default();
+        TrainConfig {
+            conditional: false,
+            paired: 0.0,
+            prior: 0.0,
+            steps: StageSteps { matching: 0, positions: 0, adversarial: ours.steps.total() },
+            ..ours
+        }
+    }
+
+    /// Names the first value that is out of range.
+    pub fn check(&self) -> Result<(), TrainError> {
+        let must = |good: bool, what: &str| match good {
+            true => Ok(()),
+            false => Err(TrainError::Config(what.to_string())),
+        };
+        let share = |x: f64| (0.0..=1e6).contains(&x);
+        must((4..=64).contains(&self.grid), "grid must be 4 to 64")?;
+        must((1..=4096).contains(&self.fabrics), "fabrics must be 1 to 4096")?;
+        must((1..=1024).contains(&self.evaluation_fabrics), "evaluation_fabrics must be 1 to 1024")?;
+        must((2..=1024).contains(&self.batch), "batch must be 2 to 1024: batch normalisation needs two")?;
+        must((1..=10_000_000).contains(&self.steps.total()), "steps must be 1 to 10 million in all")?;
+        for (rate, name) in [(self.matching_rate, "matching_rate"), (self.learning_rate, "learning_rate")] {
+            must(rate > 0.0 && rate <= 1.0, &format!("{name} must be above 0 and at most 1"))?;
+        }
+        must((0.0..1.0).contains(&self.beta1), "beta1 must be 0 to below 1")?;
+        must(self.epoch_pictures > 0 && self.halve_every_epochs > 0, "epochs must not be empty")?;
+        must(
+            [self.alpha, self.beta, self.phi, self.paired, self.prior].into_iter().all(share)
+                && share(self.position_weight)
+                && share(self.stretch_weight),
+            "weights of losses must be 0 to 1e6",
+        )?;
+        must((0.0..=1.0).contains(&self.variation), "variation must be 0 to 1")?;
+        must(
+            !self.substeps.is_empty() && self.substeps.iter().all(|s| (1..=1024).contains(s)),
+            "substeps must be a list of numbers from 1 to 1024",
+        )?;
+        must(!self.picture.is_empty() && self.picture.len() <= 3, "picture must have 1 to 3 channels")?;
+        must(self.gradient_clip > 0.0, "gradient_clip must be above 0")?;
+        must(self.report_every > 0, "report_every must be above 0")
+    }
+
+    /// Digest of the configuration in hexadecimal.
+    pub fn digest(&self) -> Result<String, TrainError> {
+        let text = serde_json::to_string(self).map_err(TrainError::part)?;
+        let mut h = taut::Hash64::new();
+        h.bytes(text.as_bytes());
+        Ok(format!("{:016x}", h.finish()))
+    }
+}

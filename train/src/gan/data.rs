@@ -1,0 +1,269 @@
+//! The training set: fabrics with their words, how the reference cloth of each hangs, and what the net shall say.
+
+use std::sync::Arc;
+
+use taut::field::FieldView;
+use taut::noise;
+use taut::{Cloth, ClothDef, Grid, GridDef};
+use taut_lab::fabric::{self, Fabric};
+use taut_lab::scene::Scene;
+
+use super::{TrainConfig, TrainError};
+use crate::cloth::{self, SceneDef, Springs};
+use crate::export::ExportMeta;
+use crate::image::Renderer;
+use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, NOISE};
+use crate::words::WordTable;
+use crate::words::tokens::{resolve, tokenize};
+
+/// Scenes whose folds do not bifurcate, so that positions can be compared.
+pub const SCENES: [Scene; 2] = [Scene::Hang2, Scene::Edge];
+
+/// Seconds after which the reference cloth is at rest (damping 2 1/s).
+const REFERENCE_SECONDS: f32 = 8.0;
+
+/// Word vectors of length 1 are multiplied by the square root of their 1024 dimensions: then their numbers are of the size
+/// of the noise beside them, and the net does not have to find the words under it. A power of two: exact in f16.
+const WORD_SCALE: f32 = 32.0;
+
+/// Seeds of the training set, the evaluation set and the stream of the first stage differ by these.
+const EVALUATION: u64 = 0x6576_616c;
+const STREAM: u64 = 0x7374_7265;
+
+/// The stiffness that the net shall say for a fabric, in N/m: the physical one, with shear raised to 0.3 of the mean
+/// structural stiffness. A game's step cuts every family alike, and then a weak shear takes the strain: this ratio is
+/// the best analytic choice there (docs/training.md).
+pub fn corrected_stiffness(fabric: &Fabric) -> [f32; 4] {
+    let [warp, weft, shear, bend] = fabric.stiffness;
+    let mean = 0.5 * (warp + weft);
+    [warp, weft, shear.max(0.3 * mean), bend.min(taut::BEND_SHARE * mean)]
+}
+
+/// How numbers are written in tanh's range: -1 and 1 are the ends of a range, logarithmic in between.
+#[derive(Clone, Copy, Debug)]
+pub struct Coding {
+    low: f64,
+    high: f64,
+}
+
+impl Coding {
+    /// The codings of the field's channels and of the fabric's numbers, as the file's metadata says.
+    pub fn of(meta: &ExportMeta) -> ([Coding; CHANNELS], [Coding; FABRIC]) {
+        let coding = |(low, high): (f64, f64)| Coding { low: low.ln(), high: high.ln() };
+        (meta.channel_ranges_n_per_m.map(coding), meta.fabric_ranges.map(coding))
+    }
+
+    /// To -1..1, clipped.
+    pub fn encode(&self, value: f64) -> f64 {
+        (2.0 * (value.ln() - self.low) / (self.high - self.low) - 1.0).clamp(-0.999, 0.999)
+    }
+
+    /// ln(value) = offset + slope t.
+    pub fn line(&self) -> (f64, f64) {
+        (0.5 * (self.low + self.high), 0.5 * (self.high - self.low))
+    }
+}
+
+/// A fabric in a scene with its reference.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// What it is described as.
+    pub words: String,
+    /// Its constants.
+    pub fabric: Fabric,
+    /// How it hangs.
+    pub scene: Scene,
+    /// The reference at rest: positions of the training grid, `[particle][axis]`, m.
+    pub reference: Vec<f32>,
+    /// Its picture, `[channel][64][64]`.
+    pub picture: Vec<f32>,
+    /// The cloth at each of the configuration's substeps; each starts at the reference.
+    pub cloths: Vec<cloth::Scene>,
+}
+
+/// Everything that the stages draw from.
+pub struct Dataset {
+    /// Examples of training.
+    pub training: Vec<Example>,
+    /// Examples of evaluation: other fabrics.
+    pub evaluation: Vec<Example>,
+    words: WordTable,
+    seed: u64,
+    variation: f64,
+    codings: ([Coding; CHANNELS], [Coding; FABRIC]),
+}
+
+impl Dataset {
+    /// Makes the reference cloths. `progress` hears the share that is done.
+    pub fn new(
+        config: &TrainConfig,
+        mut words: WordTable,
+        meta: &ExportMeta,
+        renderer: &Renderer,
+        mut progress: impl FnMut(f32),
+    ) -> Result<Dataset, TrainError> {
+        words.vectors.iter_mut().for_each(|x| *x *= WORD_SCALE);
+        let total = (config.fabrics + config.evaluation_fabrics) * SCENES.len();
+        let mut done = 0;
+        let mut set = |seed: u64, count: usize| -> Result<Vec<Example>, TrainError> {
+            let mut out = Vec::new();
+            for i in 0..count {
+                let (fabric, words) = fabric::sample(seed, i as u32);
+                for scene in SCENES {
+                    out.push(example(config, &fabric, &words, scene, renderer)?);
+                    done += 1;
+                    progress(done as f32 / total as f32);
+                }
+            }
+            Ok(out)
+        };
+        Ok(Dataset {
+            training: set(config.seed, config.fabrics)?,
+            evaluation: set(config.seed ^ EVALUATION, config.evaluation_fabrics)?,
+            words,
+            seed: config.seed,
+            variation: config.variation,
+            codings: Coding::of(meta),
+        })
+    }
+
+    /// The codings of the outputs.
+    pub fn codings(&self) -> &([Coding; CHANNELS], [Coding; FABRIC]) {
+        &self.codings
+    }
+
+    /// The word table.
+    pub fn words(&self) -> &WordTable {
+        &self.words
+    }
+
+    /// A fabric and its words for the first stage: number `index` of an endless stream.
+    pub fn streamed(&self, index: u32) -> (Fabric, String) {
+        fabric::sample(self.seed ^ STREAM, index)
+    }
+
+    /// The description vector of some words: the mean of their vectors, [1024].
+    pub fn describe(&self, words: &str) -> Vec<f32> {
+        let mut sum = vec![0.0f32; DESCRIPTION];
+        let mut known = 0;
+        for word in self.indices(words) {
+            known += 1;
+            for (s, x) in sum.iter_mut().zip(self.words.vector(word)) {
+                *s += x;
+            }
+        }
+        sum.iter_mut().for_each(|s| *s /= known.max(1) as f32);
+        sum
+    }
+
+    /// The known words of a text, at most 16, as the runtime takes them.
+    pub fn indices(&self, words: &str) -> Vec<usize> {
+        let look = |w: &str| self.words.index(w);
+        let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
+        out.truncate(crate::export::TOKENS);
+        out
+    }
+
+    /// The noise of a draw, [128].
+    pub fn noise(&self, draw: u64) -> Vec<f32> {
+        (0..NOISE as u32).map(|i| noise::gaussian(self.seed.wrapping_add(draw), i)).collect()
+    }
+
+    /// What the net shall say of a fabric: field `[4][32][32]` and fabric [5] in tanh's range. The noise varies the field
+    /// smoothly, as two pieces of one fabric differ.
+    pub fn target(&self, fabric: &Fabric, noise: &[f32]) -> (Vec<f32>, Vec<f32>) {
+        let k = corrected_stiffness(fabric);
+        let mut field = Vec::with_capacity(CHANNELS * GRID * GRID);
+        for (k, coding) in k.iter().zip(&self.codings.0) {
+            for row in 0..GRID {
+                for column in 0..GRID {
+                    let ln = self.variation * pattern(noise, row, column);
+                    field.push(coding.encode(f64::from(*k) * ln.exp()) as f32);
+                }
+            }
+        }
+        let limits = stretch_limits(fabric);
+        let numbers = [fabric.density_kg_m2, fabric.hinge_rigidity_n_m, limits[0], limits[1], limits[2]];
+        let told = numbers.iter().zip(&self.codings.1).map(|(x, c)| c.encode(f64::from(*x)) as f32).collect();
+        (field, told)
+    }
+}
+
+/// Stretch that a fabric shows in use, per direction: twice the strain at the top of a sheet of 1 m under its own weight,
+/// rho g H / C, with C11, C22 and, along the diagonal, the stiffness of the lattice at 45 degrees, at least 0.1 %.
+pub fn stretch_limits(fabric: &Fabric) -> [f32; 3] {
+    let [warp, weft, shear, bend] = fabric.stiffness;
+    let weight = fabric.density_kg_m2 * 9.81;
+    // the lattice turned by 45 degrees, warp and weft averaged: C11' = a/2 + 3 s/2, C12' = a/2 - s/2
+    let a = 0.5 * (warp + weft) + 4.0 * bend;
+    let (along, across) = (0.5 * a + 1.5 * shear, 0.5 * (a - shear));
+    let diagonal = along - across * across / along;
+    [warp + shear + 4.0 * bend, weft + shear + 4.0 * bend, diagonal].map(|c| (2.0 * weight / c).clamp(0.001, 0.29))
+}
+
+/// A smooth pattern of deviation about 1 over the field from the first numbers of the noise.
+fn pattern(noise: &[f32], row: usize, column: usize) -> f64 {
+    use std::f64::consts::PI;
+    let (u, v) = (column as f64 / (GRID - 1) as f64, row as f64 / (GRID - 1) as f64);
+    let cos = |n: f64, x: f64| (n * PI * x).cos();
+    let modes = [1.0, cos(1.0, u), cos(1.0, v), cos(1.0, u) * cos(1.0, v), cos(2.0, u), cos(2.0, v)];
+    modes.iter().zip(noise).map(|(m, z)| m * f64::from(*z)).sum::<f64>() / 6f64.sqrt()
+}
+
+fn example(
+    config: &TrainConfig,
+    fabric: &Fabric,
+    words: &str,
+    scene: Scene,
+    renderer: &Renderer,
+) -> Result<Example, TrainError> {
+    let reference = reference(config.grid, fabric, scene)?;
+    let springs = Arc::new(Springs::new(config.grid, config.grid, 1.0, 1.0).map_err(TrainError::part)?);
+    let start: Vec<[f64; 3]> = reference.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
+    let cloths = config
+        .substeps
+        .iter()
+        .map(|substeps| {
+            let def = SceneDef {
+                density_kg_m2: f64::from(fabric.density_kg_m2),
+                dt_s: 1.0 / (60.0 * f64::from(*substeps)),
+                ..SceneDef::hung(&springs, &scene.pins(config.grid))
+            };
+            let mut cloth = cloth::Scene::new(&springs, def)?;
+            cloth.set_start(Some(start.clone()))?;
+            Ok(cloth)
+        })
+        .collect::<Result<Vec<_>, cloth::ClothError>>()
+        .map_err(TrainError::part)?;
+    let picture = renderer.render(&reference).map_err(TrainError::part)?;
+    Ok(Example { words: words.to_string(), fabric: fabric.clone(), scene, reference, picture, cloths })
+}
+
+/// The reference cloth: core itself at the physical stiffness, with as many substeps as the budget needs to cut nothing,
+/// stepped to rest.
+fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainError> {
+    let side = n as u32;
+    let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).map_err(TrainError::part)?;
+    let k = fabric.stiffness;
+    let field: Vec<f32> = (0..16).map(|i| k[i / 4]).collect();
+    let field = FieldView::new(4, 2, 2, &field).map_err(TrainError::part)?;
+    let mut def = ClothDef { density_kg_m2: fabric.density_kg_m2, max_pins: scene.max_pins(n), ..ClothDef::default() };
+    let mut block = vec![0.0; Cloth::memory(&grid, &def).map_err(TrainError::part)?];
+    let mut cloth = Cloth::create(&grid, &def, &mut block).map_err(TrainError::part)?;
+    cloth.set_stiffness_field(&field);
+    scene.set_up(&mut cloth).map_err(TrainError::part)?;
+    let needed = 1.2 / (cloth.budget().map_err(TrainError::part)?.max_dt_s * def.rate_hz);
+    def.substeps = (needed.ceil() as u32).clamp(16, 1024);
+    let mut cloth = Cloth::create(&grid, &def, &mut block).map_err(TrainError::part)?;
+    cloth.set_stiffness_field(&field);
+    scene.set_up(&mut cloth).map_err(TrainError::part)?;
+    for _ in 0..(REFERENCE_SECONDS * def.rate_hz) as usize {
+        cloth.step().map_err(TrainError::part)?;
+    }
+    let mut out = Vec::with_capacity(3 * grid.particles());
+    for i in 0..grid.particles() {
+        let p = cloth.position(i).map_err(TrainError::part)?;
+        out.extend([p.x, p.y, p.z]);
+    }
+    Ok(out)
+}

@@ -1,0 +1,450 @@
+use std::path::Path;
+use std::sync::Arc;
+
+use burn::Tensor;
+use burn::grad_clipping::GradientClippingConfig;
+use burn::module::Module;
+use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
+use burn::tensor::{Device, TensorData};
+use serde::Serialize;
+use taut::noise;
+
+use super::{Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
+use super::{discriminator_loss, generator_loss, weight_penalty};
+use crate::cloth::{self, equilibrium};
+use crate::image::{
+    AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
+};
+use crate::nets::{
+    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig, NOISE,
+};
+
+/// What a step trains on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// The field.
+    Matching,
+    /// Positions and stretch.
+    Positions,
+    /// The paper's game.
+    Adversarial,
+}
+
+/// The losses of a step; what a stage does not have is 0.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Losses {
+    /// What the generator minimised.
+    pub generator: f64,
+    /// Of the discriminator (eq. 15).
+    pub discriminator: f64,
+    /// Adversarial (eq. 20), before alpha.
+    pub adversarial: f64,
+    /// L2 (eq. 18), before beta.
+    pub weights: f64,
+    /// Field against what the words mean, in tanh's range.
+    pub field: f64,
+    /// Fabric numbers, likewise.
+    pub fabric: f64,
+    /// Positions: mean squared distance in mm^2.
+    pub position_mm2: f64,
+    /// Stretch: root mean square difference in percent.
+    pub stretch_pct: f64,
+    /// Pictures: mean squared difference.
+    pub picture: f64,
+}
+
+/// A training run in memory.
+pub struct Trainer {
+    config: TrainConfig,
+    data: Dataset,
+    renderer: Arc<Renderer>,
+    device: Device,
+    generator: Generator,
+    discriminator: Discriminator,
+    generator_optimizer: ModuleOptimizer,
+    discriminator_optimizer: ModuleOptimizer,
+    /// Steps done.
+    pub step: usize,
+}
+
+/// The inputs of a batch as tensors.
+struct Batch {
+    words: Tensor<2>,
+    noise: Tensor<2>,
+    pins: Tensor<4>,
+    field: Tensor<4>,
+    fabric: Tensor<2>,
+}
+
+impl Trainer {
+    /// A run at its start.
+    pub fn new(config: &TrainConfig, data: Dataset, renderer: Arc<Renderer>) -> Result<Trainer, TrainError> {
+        config.check()?;
+        let device = Device::flex().autodiff();
+        let adam = AdamConfig::new().with_beta_1(config.beta1).with_epsilon(1e-8);
+        let clipped = adam.clone().with_grad_clipping(Some(GradientClippingConfig::Norm(config.gradient_clip)));
+        let generator = GeneratorConfig { width: config.generator_width }.init(config.seed, &device);
+        let discriminator = DiscriminatorConfig {
+            width: config.discriminator_width,
+            picture_channels: config.picture.len(),
+            conditional: config.conditional,
+            ..DiscriminatorConfig::default()
+        }
+        .init(config.seed ^ 0xd15c, &device);
+        Ok(Trainer {
+            config: config.clone(),
+            data,
+            renderer,
+            device,
+            generator: generator.map_err(TrainError::part)?,
+            discriminator: discriminator.map_err(TrainError::part)?,
+            generator_optimizer: clipped.init(),
+            discriminator_optimizer: adam.init(),
+            step: 0,
+        })
+    }
+
+    /// The generator as it stands.
+    pub fn generator(&self) -> &Generator {
+        &self.generator
+    }
+
+    /// The data.
+    pub fn data(&self) -> &Dataset {
+        &self.data
+    }
+
+    /// The stage of the next step.
+    pub fn stage(&self) -> Stage {
+        let s = &self.config.steps;
+        match self.step {
+            n if n < s.matching => Stage::Matching,
+            n if n < s.matching + s.positions => Stage::Positions,
+            _ => Stage::Adversarial,
+        }
+    }
+
+    /// Step size of the next step: constant in the first stage; then halved every few epochs from its end on.
+    pub fn rate(&self) -> f64 {
+        if self.stage() == Stage::Matching {
+            // down to a tenth over the stage, so that the next one starts calm
+            let share = self.step as f64 / self.config.steps.matching.max(1) as f64;
+            return self.config.matching_rate * 0.1f64.powf(share);
+        }
+        let pictures = (self.step - self.config.steps.matching) * self.config.batch;
+        let halvings = pictures / (self.config.epoch_pictures * self.config.halve_every_epochs);
+        self.config.learning_rate * 0.5f64.powi(halvings as i32)
+    }
+
+    /// One step.
+    pub fn advance(&mut self) -> Result<Losses, TrainError> {
+        let losses = match self.stage() {
+            Stage::Matching => self.match_fields()?,
+            Stage::Positions => self.match_positions()?,
+            Stage::Adversarial => self.play()?,
+        };
+        for (loss, name) in [(losses.generator, "generator"), (losses.discriminator, "discriminator")] {
+            if !loss.is_finite() {
+                return Err(TrainError::Diverged { step: self.step, loss: name });
+            }
+        }
+        self.step += 1;
+        Ok(losses)
+    }
+
+    /// A number in 0..n for this step.
+    fn draw(&self, stream: u64, i: usize, n: usize) -> usize {
+        let seed = self.config.seed ^ (stream << 32) ^ self.step as u64;
+        (noise::bits(seed, i as u32) % n as u64) as usize
+    }
+
+    /// The inputs for some fabrics, words and pins; `draws` number the noise.
+    fn batch<'a>(
+        &self,
+        items: impl Iterator<Item = (&'a taut_lab::fabric::Fabric, &'a str, Vec<usize>)>,
+        draws: impl Fn(usize) -> Vec<f32>,
+        device: &Device,
+    ) -> Batch {
+        let (mut words, mut noises, mut pins, mut fields, mut fabrics) = (vec![], vec![], vec![], vec![], vec![]);
+        let mut n = 0;
+        for (fabric, text, pinned) in items {
+            let z = draws(n);
+            let (field, numbers) = self.data.target(fabric, &z);
+            words.extend(self.data.describe(text));
+            noises.extend(z);
+            pins.extend(pin_map(&pinned));
+            fields.extend(field);
+            fabrics.extend(numbers);
+            n += 1;
+        }
+        let two = |v, m| Tensor::<2>::from_data(TensorData::new(v, [n, m]), device);
+        Batch {
+            words: two(words, DESCRIPTION),
+            noise: two(noises, NOISE),
+            pins: Tensor::from_data(TensorData::new(pins, [n, 1, GRID, GRID]), device),
+            field: Tensor::from_data(TensorData::new(fields, [n, CHANNELS, GRID, GRID]), device),
+            fabric: two(fabrics, FABRIC),
+        }
+    }
+
+    fn update_generator(&mut self, loss: &Tensor<1>) {
+        let gradients = GradientsParams::from_grads(loss.backward(), &self.generator);
+        self.generator = self.generator_optimizer.step(self.rate(), self.generator.clone(), gradients);
+    }
+
+    fn match_fields(&mut self) -> Result<Losses, TrainError> {
+        let b = self.config.batch;
+        let drawn: Vec<_> = (0..b).map(|i| self.data.streamed((self.step * b + i) as u32)).collect();
+        let scenes: Vec<_> = (0..b).map(|i| random_pins(self.draw(1, i, usize::MAX) as u64)).collect();
+        let first = (self.step * b) as u64;
+        let items = drawn.iter().zip(scenes).map(|((f, w), pins)| (f, w.as_str(), pins));
+        let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
+        let out = self.generator.forward(batch.words, batch.noise, batch.pins);
+        let field = (out.field - batch.field).square().mean();
+        let fabric = (out.fabric - batch.fabric).square().mean();
+        let loss = field.clone() + fabric.clone();
+        self.update_generator(&loss);
+        Ok(Losses { generator: scalar(&loss), field: scalar(&field), fabric: scalar(&fabric), ..Losses::default() })
+    }
+
+    /// Examples of this step, the cloth of each at one of the substeps, and the noise's numbers.
+    fn examples(&self) -> (Vec<&Example>, Vec<cloth::Scene>) {
+        let chosen: Vec<&Example> =
+            (0..self.config.batch).map(|i| &self.data.training[self.draw(2, i, self.data.training.len())]).collect();
+        let cloths =
+            chosen.iter().enumerate().map(|(i, e)| e.cloths[self.draw(3, i, e.cloths.len())].clone()).collect();
+        (chosen, cloths)
+    }
+
+    /// Positions at rest [batch, particles, 3] of generated fields in tanh's range.
+    fn hang(&self, field: Tensor<4>, cloths: &mut [cloth::Scene]) -> Result<Tensor<3>, TrainError> {
+        let device = field.device();
+        let [b, channels, _, _] = field.dims();
+        let g = self.config.grid;
+        let (offsets, slopes): (Vec<f32>, Vec<f32>) =
+            self.data.codings().0.iter().map(|c| c.line()).map(|(offset, slope)| (offset as f32, slope as f32)).unzip();
+        let column = |v: Vec<f32>| Tensor::<4>::from_data(TensorData::new(v, [1, CHANNELS, 1, 1]), &device);
+        let k = (field * column(slopes) + column(offsets)).exp();
+        let m = resampling(g);
+        let left = Tensor::<3>::from_data(TensorData::new(m.clone(), [1, g, GRID]), &device);
+        let right = left.clone().swap_dims(1, 2);
+        let flat = k.reshape([b * channels, GRID, GRID]);
+        let small = left.expand([b * channels, g, GRID]).matmul(flat);
+        let small = small.matmul(right.expand([b * channels, GRID, g]));
+        equilibrium(small.reshape([b, channels, g, g]), cloths).map_err(TrainError::part)
+    }
+
+    fn references(&self, chosen: &[&Example], device: &Device) -> Tensor<3> {
+        let all: Vec<f32> = chosen.iter().flat_map(|e| e.reference.iter().copied()).collect();
+        let shape = [chosen.len(), self.config.grid * self.config.grid, 3];
+        Tensor::from_data(TensorData::new(all, shape), device)
+    }
+
+    fn match_positions(&mut self) -> Result<Losses, TrainError> {
+        let (chosen, mut cloths) = self.examples();
+        let g = self.config.grid;
+        let first = (self.step * self.config.batch) as u64;
+        let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
+        let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
+        let out = self.generator.forward(batch.words, batch.noise, batch.pins);
+        let x = self.hang(out.field.clone(), &mut cloths)?;
+        let reference = self.references(&chosen, &self.device);
+        let position = (x.clone() - reference.clone()).square().sum_dim(2).mean();
+        let stretch = (strains(x, g) - strains(reference, g)).square().mean();
+        let field = (out.field - batch.field).square().mean();
+        let fabric = (out.fabric - batch.fabric).square().mean();
+        let loss = position.clone() * self.config.position_weight
+            + stretch.clone() * self.config.stretch_weight
+            + (field.clone() + fabric.clone()) * self.config.prior;
+        self.update_generator(&loss);
+        Ok(Losses {
+            generator: scalar(&loss),
+            field: scalar(&field),
+            fabric: scalar(&fabric),
+            position_mm2: 1e6 * scalar(&position),
+            stretch_pct: 100.0 * scalar(&stretch).sqrt(),
+            ..Losses::default()
+        })
+    }
+
+    fn play(&mut self) -> Result<Losses, TrainError> {
+        let (chosen, mut cloths) = self.examples();
+        let b = self.config.batch;
+        let first = (self.step * b) as u64;
+        let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
+        let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
+        let out = self.generator.forward(batch.words.clone(), batch.noise, batch.pins);
+        let x = self.hang(out.field.clone(), &mut cloths)?;
+        let fake = render_images(&self.renderer, x).map_err(TrainError::part)?;
+
+        // the same augmentations and noise for both sides, drawn anew for each
+        let config = AugmentConfig { noise: self.config.picture_noise, ..AugmentConfig::default() };
+        let draw = |side: u64| {
+            AugmentBatch::draw(&config, &self.config.picture, self.config.seed ^ side, first, b)
+                .map_err(TrainError::part)
+        };
+        let real: Vec<f32> = chosen.iter().flat_map(|e| e.picture.iter().copied()).collect();
+        let shape = [b, self.config.picture.len(), crate::image::SIDE, crate::image::SIDE];
+        let plain = Tensor::<4>::from_data(TensorData::new(real, shape), &self.device);
+        let real = augment_images(&Arc::new(draw(0x5ea1)?), plain.clone()).map_err(TrainError::part)?;
+        let shown = augment_images(&Arc::new(draw(0xfa4e)?), fake.clone()).map_err(TrainError::part)?;
+
+        let ratings = Ratings {
+            real: self.discriminator.forward(real, batch.words.clone()),
+            generated: self.discriminator.forward(shown.clone().detach(), batch.words.clone()),
+        };
+        let judged = discriminator_loss(&ratings);
+        let gradients = GradientsParams::from_grads(judged.backward(), &self.discriminator);
+        self.discriminator = self.discriminator_optimizer.step(self.rate(), self.discriminator.clone(), gradients);
+
+        let adversarial = generator_loss(self.discriminator.forward(shown, batch.words));
+        let samples = self.data.training.len();
+        let weights = weight_penalty(self.generator.squared_weights(), self.config.phi, samples);
+        let picture = (fake - plain).square().mean();
+        let field = (out.field - batch.field).square().mean();
+        let fabric = (out.fabric - batch.fabric).square().mean();
+        let loss = adversarial.clone() * self.config.alpha
+            + weights.clone() * self.config.beta
+            + picture.clone() * self.config.paired
+            + (field.clone() + fabric.clone()) * self.config.prior;
+        self.update_generator(&loss);
+        Ok(Losses {
+            generator: scalar(&loss),
+            discriminator: scalar(&judged),
+            adversarial: scalar(&adversarial),
+            weights: scalar(&weights),
+            field: scalar(&field),
+            fabric: scalar(&fabric),
+            picture: scalar(&picture),
+            ..Losses::default()
+        })
+    }
+
+    /// Score of the evaluation set: mean NMSE of the generated pictures against the references (paper, VI.B, 9), with the
+    /// noise at zero; writes a sheet of real and generated pictures if a path is given.
+    pub fn evaluate(&self, sheet: Option<&Path>) -> Result<f64, TrainError> {
+        let device = Device::flex();
+        let chosen: Vec<&Example> = self.data.evaluation.iter().collect();
+        let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
+        let batch = self.batch(items, |_| vec![0.0; NOISE], &device);
+        let out = self.generator.valid().forward(batch.words, batch.noise, batch.pins);
+        // the middle of the substeps: a game's step
+        let mut cloths: Vec<_> = chosen.iter().map(|e| e.cloths[e.cloths.len() / 2].clone()).collect();
+        let x = self.hang(out.field, &mut cloths)?;
+        let generated = render_images(&self.renderer, x).map_err(TrainError::part)?;
+        let generated: Vec<f32> =
+            generated.into_data().try_into_vec().map_err(|e| TrainError::Part(format!("{e:?}")))?;
+        let real: Vec<f32> = chosen.iter().flat_map(|e| e.picture.iter().copied()).collect();
+        let len = self.renderer.image_len();
+        let mut sum = 0.0;
+        for (real, generated) in real.chunks_exact(len).zip(generated.chunks_exact(len)) {
+            sum += nmse(real, generated).map_err(TrainError::part)?;
+        }
+        if let Some(path) = sheet {
+            let layout = SheetLayout { channels: self.config.picture.len(), pairs_per_row: 4, zoom: 2 };
+            write_sheet(path, &real, &generated, layout).map_err(TrainError::part)?;
+        }
+        Ok(sum / chosen.len() as f64)
+    }
+
+    /// Writes everything that a resumed run needs.
+    pub fn save(&self, run: &Path, best: Option<(f64, usize)>) -> Result<(), TrainError> {
+        let state = Checkpoint { step: self.step, best, digest: self.config.digest()? };
+        state.write(run, |folder| {
+            let file = |name: &str| folder.join(name);
+            let part = |e: burn::store::RecordError| TrainError::file(folder, format!("{e:?}"));
+            self.generator.clone().save_file(file("generator.bpk")).map_err(part)?;
+            self.discriminator.clone().save_file(file("discriminator.bpk")).map_err(part)?;
+            self.generator_optimizer.save(file("generator_adam.bpk")).map_err(part)?;
+            self.discriminator_optimizer.save(file("discriminator_adam.bpk")).map_err(part)
+        })
+    }
+
+    /// Goes on from a checkpoint of the run. `state` was read by [`Checkpoint::read`].
+    pub fn resume(&mut self, run: &Path, state: &Checkpoint) -> Result<(), TrainError> {
+        if state.digest != self.config.digest()? {
+            return Err(TrainError::Config(format!(
+                "{} holds a run of another configuration; choose another folder",
+                run.display()
+            )));
+        }
+        let folder = Checkpoint::folder(run);
+        let file = |name: &str| folder.join(name);
+        let part = |e: burn::store::RecordError| TrainError::file(&folder, format!("{e:?}"));
+        self.generator = self.generator.clone().try_load_file(file("generator.bpk")).map_err(part)?;
+        self.discriminator = self.discriminator.clone().try_load_file(file("discriminator.bpk")).map_err(part)?;
+        self.generator_optimizer = self.generator_optimizer.clone().load(file("generator_adam.bpk")).map_err(part)?;
+        self.discriminator_optimizer =
+            self.discriminator_optimizer.clone().load(file("discriminator_adam.bpk")).map_err(part)?;
+        self.step = state.step;
+        Ok(())
+    }
+
+    /// Writes the weights of the generator alone.
+    pub fn save_generator(&self, path: &Path) -> Result<(), TrainError> {
+        self.generator.clone().save_file(path).map_err(|e| TrainError::file(path, format!("{e:?}")))
+    }
+
+    /// Reads weights of the generator.
+    pub fn load_generator(&mut self, path: &Path) -> Result<(), TrainError> {
+        let loaded = self.generator.clone().try_load_file(path);
+        self.generator = loaded.map_err(|e| TrainError::file(path, format!("{e:?}")))?;
+        Ok(())
+    }
+}
+
+fn scalar(t: &Tensor<1>) -> f64 {
+    f64::from(t.clone().into_scalar::<f32>())
+}
+
+fn pins_of(e: &Example) -> Vec<usize> {
+    // at the net's own resolution
+    e.scene.pins(GRID)
+}
+
+/// A few pins somewhere, or none, for the first stage: what the words mean does not depend on them.
+fn random_pins(bits: u64) -> Vec<usize> {
+    (0..bits % 4).map(|i| (noise::bits(bits, i as u32) % (GRID * GRID) as u64) as usize).collect()
+}
+
+/// Distance to the nearest pin over the side, clipped to 1, [32][32].
+fn pin_map(pins: &[usize]) -> Vec<f32> {
+    let last = (GRID - 1) as f32;
+    (0..GRID * GRID)
+        .map(|i| {
+            let distance = |p: &usize| {
+                let (du, dv) = ((i % GRID) as f32 - (p % GRID) as f32, (i / GRID) as f32 - (p / GRID) as f32);
+                (du * du + dv * dv).sqrt() / last
+            };
+            pins.iter().map(distance).fold(1.0, f32::min)
+        })
+        .collect()
+}
+
+/// Bilinear resampling from 32 to `g` places with the ends aligned, [g][32].
+fn resampling(g: usize) -> Vec<f32> {
+    let mut m = vec![0.0; g * GRID];
+    for i in 0..g {
+        let at = i as f32 * (GRID - 1) as f32 / (g - 1) as f32;
+        let low = (at.floor() as usize).min(GRID - 2);
+        let share = at - low as f32;
+        m[i * GRID + low] += 1.0 - share;
+        m[i * GRID + low + 1] += share;
+    }
+    m
+}
+
+/// Strains of the structural springs along u, then along v, of positions [batch, g * g, 3]: [batch, 2 g (g - 1)].
+fn strains(x: Tensor<3>, g: usize) -> Tensor<2> {
+    let [b, _, _] = x.dims();
+    let rest = 1.0 / (g - 1) as f64;
+    let x = x.reshape([b, g, g, 3]);
+    let strain = |a: Tensor<4>, c: Tensor<4>| {
+        let length = ((a - c).square().sum_dim(3) + 1e-12).sqrt();
+        (length / rest - 1.0).reshape([b, g * (g - 1)])
+    };
+    let along_u = strain(x.clone().slice([0..b, 0..g, 1..g, 0..3]), x.clone().slice([0..b, 0..g, 0..g - 1, 0..3]));
+    let along_v = strain(x.clone().slice([0..b, 1..g, 0..g, 0..3]), x.slice([0..b, 0..g - 1, 0..g, 0..3]));
+    Tensor::cat(vec![along_u, along_v], 1)
+}

@@ -1,0 +1,39 @@
+//! The program `taut-train`.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use taut_train::{gan, words};
+
+/// Trains the generator of taut: words in, a stiffness field out.
+#[derive(Debug, Parser)]
+#[command(version, about)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// From nothing to a generator file; goes on where an interrupted run of the same folder ended
+    Run(gan::RunArgs),
+    /// Word vectors
+    #[command(subcommand)]
+    Words(words::command::WordsCommand),
+}
+
+fn main() -> ExitCode {
+    let result = match Program::parse().command {
+        Command::Run(args) => {
+            gan::run(&args).map_err(|e| (e.to_string(), matches!(e, gan::TrainError::Interrupted { .. })))
+        }
+        Command::Words(command) => words::command::run(&command).map_err(|e| (e.to_string(), false)),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err((message, interrupted)) => {
+            eprintln!("taut-train: {message}");
+            ExitCode::from(if interrupted { 130 } else { 2 })
+        }
+    }
+}

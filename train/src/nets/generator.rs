@@ -1,0 +1,191 @@
+//! The generator (paper, section V.A.1 and Fig. 4): a description, noise and the scene's pins in, a stiffness field out.
+//!
+//! With base width w (default 16), every deconvolution followed by ReLU but the last, which ends in tanh:
+//!
+//! | layer | input | output |
+//! | --- | --- | --- |
+//! | first | description 1024 + noise 128 as 1152 channels of 1 x 1 | 8w, 4 x 4 (5 x 5 kernel, stride 2) |
+//! | second | BN(first) | 4w, 8 x 8 (3 x 3, stride 2) |
+//! | third | BN(second ++ skip x2) | 2w, 16 x 16 |
+//! | fourth | BN(third ++ skip x4) | w, 32 x 32 |
+//! | fifth | BN(fourth ++ skip x8) ++ pins | w, 32 x 32 (stride 1), the fourth added to it before ReLU |
+//! | sixth | BN(fifth) ++ pins | 4 channels, 32 x 32 (stride 1), tanh |
+//!
+//! The fifth and sixth are the "two layers more" than DCGAN, and the sum with the fourth is the residual. **Stitching**:
+//! the paper says that the outputs of the activation layers of the first and of the second to the fourth deconvolution
+//! are stitched together as inputs of the batch normalisation (section VI.B.1). Here the activation of the first layer
+//! goes through one 1 x 1 convolution (8w to w channels, called skip), is repeated to the size at hand (nearest
+//! neighbour) and concatenated to the activation of the second, third and fourth, in front of the normalisation that
+//! each next layer begins with. So the description reaches every scale directly.
+//!
+//! `pins`, the distance to the nearest pin, joins behind the normalisation: it is in [0, 1] already, and the statistics
+//! of one scene must not shift what another scene shows.
+//!
+//! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
+//! whole. Noise does not reach it: another seed is another piece of the same fabric.
+
+use burn::Tensor;
+use burn::module::Module;
+use burn::nn::conv::{Conv2d, ConvTranspose2d};
+use burn::nn::{BatchNorm, Linear};
+use burn::tensor::Device;
+use burn::tensor::activation::{relu, tanh};
+use serde::{Deserialize, Serialize};
+
+use super::init::LayerBuilder;
+use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError};
+
+/// What a generator is built from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GeneratorConfig {
+    /// Base width w: channels of the last 32 x 32 layers; 1 to [`MAX_WIDTH`], default 16.
+    pub width: usize,
+}
+
+impl Default for GeneratorConfig {
+    fn default() -> Self {
+        Self { width: 16 }
+    }
+}
+
+impl GeneratorConfig {
+    /// A generator with first weights from `seed`; on an autodiff device it is ready to train.
+    ///
+    /// The description vectors should have entries of about unit size, like the noise: 1024 entries of 1/32 (vectors of
+    /// unit length) would be ten times quieter than the noise in the first layer.
+    ///
+    /// # Errors
+    /// [`NetError::Width`].
+    pub fn init(&self, seed: u64, device: &Device) -> Result<Generator, NetError> {
+        let w = self.width;
+        if w == 0 || w > MAX_WIDTH {
+            return Err(NetError::Width(w));
+        }
+        let mut b = LayerBuilder::new(seed, device);
+        Ok(Generator {
+            first: b.deconvolution([DESCRIPTION + NOISE, 8 * w], 5, 2, 1),
+            skip: b.convolution([8 * w, w], 1, 1),
+            second: Deconvolution::new(&mut b, 8 * w, 0, 4 * w, 2),
+            third: Deconvolution::new(&mut b, 5 * w, 0, 2 * w, 2),
+            fourth: Deconvolution::new(&mut b, 3 * w, 0, w, 2),
+            fifth: Deconvolution::new(&mut b, 2 * w, 1, w, 1),
+            sixth: Deconvolution::new(&mut b, w, 1, CHANNELS, 1),
+            fabric: b.linear(DESCRIPTION, FABRIC),
+        })
+    }
+}
+
+/// Batch normalisation and the 3 x 3 deconvolution behind it.
+#[derive(Module, Debug)]
+pub struct Deconvolution {
+    /// Over the stitched channels, without the pins.
+    pub norm: BatchNorm,
+    /// 3 x 3, padding 1.
+    pub deconvolution: ConvTranspose2d,
+}
+
+impl Deconvolution {
+    fn new(b: &mut LayerBuilder<'_>, channels: usize, raw: usize, out: usize, stride: usize) -> Self {
+        let taps = 9usize.div_ceil(stride * stride);
+        Self { norm: b.batch_norm(channels), deconvolution: b.deconvolution([channels + raw, out], 3, stride, taps) }
+    }
+
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        self.deconvolution.forward(self.norm.forward(x))
+    }
+
+    fn forward_with(&self, x: Tensor<4>, raw: Tensor<4>) -> Tensor<4> {
+        self.deconvolution.forward(Tensor::cat(vec![self.norm.forward(x), raw], 1))
+    }
+}
+
+/// The generator of Fig. 4. Fields are named after the place of a layer; see the table of this module.
+#[derive(Module, Debug)]
+pub struct Generator {
+    /// 1152 to 8w, 5 x 5.
+    pub first: ConvTranspose2d,
+    /// 1 x 1 convolution of the first activation, stitched to the later ones.
+    pub skip: Conv2d,
+    /// 8w to 4w.
+    pub second: Deconvolution,
+    /// 4w + w to 2w.
+    pub third: Deconvolution,
+    /// 2w + w to w.
+    pub fourth: Deconvolution,
+    /// w + w + pins to w, with the residual.
+    pub fifth: Deconvolution,
+    /// w + pins to the four channels.
+    pub sixth: Deconvolution,
+    /// 1024 to the five numbers of the fabric.
+    pub fabric: Linear,
+}
+
+/// What the generator tells, before decoding: everything in [-1, 1].
+#[derive(Debug, Clone)]
+pub struct GeneratorOutput {
+    /// [batch, 4, 32, 32]: channels warp, weft, shear, bend; row 0 is the top row.
+    pub field: Tensor<4>,
+    /// [batch, 5]: density, hinge rigidity, stretch limits of warp, weft, diagonal.
+    pub fabric: Tensor<2>,
+}
+
+impl Generator {
+    /// Runs the network: description [batch, 1024], noise [batch, 128], distance to the nearest pin
+    /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
+    /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
+    pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
+        let fabric = tanh(self.fabric.forward(description.clone()));
+        let v = Tensor::cat(vec![description, noise], 1);
+        let [batch, n] = v.dims();
+        let a1 = relu(self.first.forward(v.reshape([batch, n, 1, 1])));
+        let skip = self.skip.forward(a1.clone());
+        let stitch = |a: Tensor<4>, times| Tensor::cat(vec![a, repeat(skip.clone(), times)], 1);
+        let a2 = relu(self.second.forward(a1));
+        let a3 = relu(self.third.forward(stitch(a2, 2)));
+        let a4 = relu(self.fourth.forward(stitch(a3, 4)));
+        let a5 = self.fifth.forward_with(stitch(a4.clone(), 8), pin_distance.clone());
+        let a5 = relu(a5 + a4);
+        let field = tanh(self.sixth.forward_with(a5, pin_distance));
+        GeneratorOutput { field, fabric }
+    }
+
+    /// Sum of the squares of all kernels and matrices, the sum of eq. 18 (biases and normalisation have no part in
+    /// it), as a tensor of one number that gradients flow through.
+    pub fn squared_weights(&self) -> Tensor<1> {
+        let ct = |c: &ConvTranspose2d| c.weight.val().square().sum();
+        ct(&self.first)
+            + self.skip.weight.val().square().sum()
+            + ct(&self.second.deconvolution)
+            + ct(&self.third.deconvolution)
+            + ct(&self.fourth.deconvolution)
+            + ct(&self.fifth.deconvolution)
+            + ct(&self.sixth.deconvolution)
+            + self.fabric.weight.val().square().sum()
+    }
+}
+
+/// Each pixel becomes a block of `times` x `times` equal ones.
+fn repeat(x: Tensor<4>, times: usize) -> Tensor<4> {
+    let [b, c, h, w] = x.dims();
+    x.reshape([b, c, h, 1, w, 1]).expand([b, c, h, times, w, times]).reshape([b, c, h * times, w * times])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burn::tensor::TensorData;
+
+    #[test]
+    fn repeat_makes_blocks() {
+        let x = Tensor::<4>::from_data(TensorData::new(vec![1.0f32, 2.0, 3.0, 4.0], [1, 1, 2, 2]), &Device::flex());
+        let y: Vec<f32> = repeat(x, 2).into_data().try_into_vec().expect("f32");
+        assert_eq!(y, [1., 1., 2., 2., 1., 1., 2., 2., 3., 3., 4., 4., 3., 3., 4., 4.]);
+    }
+
+    #[test]
+    fn a_width_of_zero_is_an_error() {
+        let e = GeneratorConfig { width: 0 }.init(1, &Device::flex()).expect_err("zero");
+        assert_eq!(e, NetError::Width(0));
+        assert!(e.to_string().contains('0'));
+    }
+}
