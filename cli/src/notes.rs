@@ -27,7 +27,7 @@ pub fn fills_the_budget(name: &str) -> bool {
 
 /// How much of K was cut, in percent.
 pub fn cut(s: &Setting) -> String {
-    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction) }
+    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction.max(0.0)) }
 }
 
 /// CPU time of a frame in microseconds.

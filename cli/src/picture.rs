@@ -40,10 +40,7 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
 /// What stands above a cloth.
 fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
     let stretch = s.stretch_pct;
-    let cut = match (notes::fills_the_budget(s.name), s.cut_fraction) {
-        (true, _) => "K at limit".into(),
-        (false, cut) => format!("K cut {:.0} %", 100.0 * cut),
-    };
+    let cut = if notes::fills_the_budget(s.name) { "K at limit".into() } else { format!("K cut {} %", notes::cut(s)) };
     [
         format!("max {} %  p99 {} %", number(stretch.max), number(stretch.p99)),
         format!("away from pins {} %", number(stretch.ex_pin_max)),
