@@ -14,6 +14,11 @@ pub enum ExportError {
         /// Name of the tensor in the file.
         tensor: String,
     },
+    /// A number of the named tensor, which stays f32, is not finite.
+    NotFinite {
+        /// Name of the tensor in the file.
+        tensor: String,
+    },
     /// The named tensor of the network has a shape that the file cannot have, or could not be read.
     Tensor {
         /// Name of the tensor in the file.
@@ -30,20 +35,15 @@ impl fmt::Display for ExportError {
         match self {
             Self::Words(what) => write!(f, "word table: {what}"),
             Self::Meta(what) => write!(f, "metadata: {what}"),
-            Self::NotHalf { tensor } => write!(
-                f,
-                "tensor {tensor} holds a number that f16 cannot: not finite or beyond 65504"
-            ),
-            Self::Tensor { tensor } => write!(
-                f,
-                "tensor {tensor} has an unexpected shape or could not be read"
-            ),
+            Self::NotHalf { tensor } => {
+                write!(f, "tensor {tensor} holds a number that f16 cannot: not finite or beyond 65504")
+            }
+            Self::NotFinite { tensor } => write!(f, "tensor {tensor} holds a number that is not finite"),
+            Self::Tensor { tensor } => write!(f, "tensor {tensor} has an unexpected shape or could not be read"),
             Self::Input(what) => write!(f, "inputs of the generator: {what}"),
-            Self::TooLarge(bytes) => write!(
-                f,
-                "the file would have {bytes} bytes, the limit is {}",
-                super::MAX_FILE_BYTES
-            ),
+            Self::TooLarge(bytes) => {
+                write!(f, "the file would have {bytes} bytes, the limit is {}", super::MAX_FILE_BYTES)
+            }
         }
     }
 }

@@ -14,15 +14,7 @@ pub fn word_table(words: usize, seed: u64) -> WordTable {
     let mut s = SplitMix64::new(seed);
     let mut vectors = vec![0.0; DESCRIPTION];
     vectors.extend(uniform(&mut s, words.saturating_sub(1) * DESCRIPTION));
-    let tokens = (0..words)
-        .map(|i| {
-            if i == 0 {
-                PADDING.into()
-            } else {
-                format!("w{i}")
-            }
-        })
-        .collect();
+    let tokens = (0..words).map(|i| if i == 0 { PADDING.into() } else { format!("w{i}") }).collect();
     WordTable { tokens, vectors }
 }
 
@@ -36,9 +28,7 @@ pub fn seasoned_generator(width: usize, seed: u64, batches: usize) -> Result<Gen
     let generator = GeneratorConfig { width }.init(seed, &device)?;
     let mut s = SplitMix64::new(!seed);
     for _ in 0..batches {
-        let tensor = |values: Vec<f32>, columns| {
-            Tensor::<2>::from_data(TensorData::new(values, [8, columns]), &device)
-        };
+        let tensor = |values: Vec<f32>, columns| Tensor::<2>::from_data(TensorData::new(values, [8, columns]), &device);
         let description = tensor(uniform(&mut s, 8 * DESCRIPTION), DESCRIPTION);
         let noise = tensor(uniform(&mut s, 8 * NOISE), NOISE);
         let pins: Vec<f32> = (0..8).flat_map(|_| pin_distance(&mut s)).collect();
@@ -51,20 +41,13 @@ pub fn seasoned_generator(width: usize, seed: u64, batches: usize) -> Result<Gen
 /// Inputs for a batch over a table of `words` rows: 1 to 16 words each, noise of variance 1, the distance to one pin.
 pub fn input(batch: usize, words: usize, seed: u64) -> ParityInput {
     let mut s = SplitMix64::new(seed);
-    let mut input = ParityInput {
-        tokens: vec![],
-        weights: vec![],
-        noise: vec![],
-        pin_distance: vec![],
-    };
+    let mut input = ParityInput { tokens: vec![], weights: vec![], noise: vec![], pin_distance: vec![] };
     for _ in 0..batch {
         let known = 1 + (s.next_u64() % TOKENS as u64) as usize;
         for i in 0..TOKENS {
             let token = 1 + (s.next_u64() % (words.max(2) - 1) as u64) as i64;
             input.tokens.push(if i < known { token } else { 0 });
-            input
-                .weights
-                .push(if i < known { 1.0 / known as f32 } else { 0.0 });
+            input.weights.push(if i < known { 1.0 / known as f32 } else { 0.0 });
         }
         input.noise.extend(uniform(&mut s, NOISE));
         input.pin_distance.extend(pin_distance(&mut s));
@@ -84,10 +67,7 @@ fn pin_distance(s: &mut SplitMix64) -> Vec<f32> {
     let (row, column) = (at(), at());
     (0..GRID * GRID)
         .map(|i| {
-            let (dy, dx) = (
-                (i / GRID) as f32 / side - row,
-                (i % GRID) as f32 / side - column,
-            );
+            let (dy, dx) = ((i / GRID) as f32 / side - row, (i % GRID) as f32 / side - column);
             (dy * dy + dx * dx).sqrt().min(1.0)
         })
         .collect()

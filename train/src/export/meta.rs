@@ -35,27 +35,15 @@ impl ExportMeta {
     /// # Errors
     /// [`ExportError::Meta`] for an empty or many-line name, a digest that is not hexadecimal, a range that is not
     /// 0 < lo < hi.
-    pub fn properties(
-        &self,
-        words: &WordTable,
-    ) -> Result<Vec<(&'static str, String)>, ExportError> {
+    pub fn properties(&self, words: &WordTable) -> Result<Vec<(&'static str, String)>, ExportError> {
         let bad = |what: String| Err(ExportError::Meta(what));
         if self.model_name.is_empty() || self.model_name.contains(char::is_control) {
             return bad("the model name is empty or holds a control character".into());
         }
-        if self.training_digest.is_empty()
-            || !self.training_digest.bytes().all(|b| b.is_ascii_hexdigit())
-        {
-            return bad(format!(
-                "the training digest {:?} is not hexadecimal",
-                self.training_digest
-            ));
+        if self.training_digest.is_empty() || !self.training_digest.bytes().all(|b| b.is_ascii_hexdigit()) {
+            return bad(format!("the training digest {:?} is not hexadecimal", self.training_digest));
         }
-        for (lo, hi) in self
-            .channel_ranges_n_per_m
-            .iter()
-            .chain(&self.fabric_ranges)
-        {
+        for (lo, hi) in self.channel_ranges_n_per_m.iter().chain(&self.fabric_ranges) {
             if !(*lo > 0.0 && lo < hi && hi.is_finite()) {
                 return bad(format!("the range {lo}:{hi} is not 0 < lo < hi"));
             }
@@ -65,14 +53,8 @@ impl ExportMeta {
             ("taut.model_name", self.model_name.clone()),
             ("taut.vocabulary", words.tokens.join("\n")),
             ("taut.channels", "warp,weft,shear,bend".into()),
-            (
-                "taut.channel_ranges_n_per_m",
-                join(&self.channel_ranges_n_per_m),
-            ),
-            (
-                "taut.fabric",
-                "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal".into(),
-            ),
+            ("taut.channel_ranges_n_per_m", join(&self.channel_ranges_n_per_m)),
+            ("taut.fabric", "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal".into()),
             ("taut.fabric_ranges", join(&self.fabric_ranges)),
             ("taut.grid", GRID.to_string()),
             ("taut.noise", NOISE.to_string()),
@@ -84,11 +66,7 @@ impl ExportMeta {
 
 /// `lo:hi,lo:hi,...` in plain decimals, which read back to the same f64.
 fn join(ranges: &[(f64, f64)]) -> String {
-    ranges
-        .iter()
-        .map(|(lo, hi)| format!("{lo}:{hi}"))
-        .collect::<Vec<_>>()
-        .join(",")
+    ranges.iter().map(|(lo, hi)| format!("{lo}:{hi}")).collect::<Vec<_>>().join(",")
 }
 
 #[cfg(test)]
@@ -99,10 +77,7 @@ mod tests {
     fn ranges_are_plain_decimals_that_read_back() {
         let m = ExportMeta::default();
         let text = join(&m.fabric_ranges);
-        assert_eq!(
-            text,
-            "0.03:0.8,0.0000001:0.001,0.0005:0.3,0.0005:0.3,0.0005:0.3"
-        );
+        assert_eq!(text, "0.03:0.8,0.0000001:0.001,0.0005:0.3,0.0005:0.3,0.0005:0.3");
         for (part, (lo, hi)) in text.split(',').zip(m.fabric_ranges) {
             let (a, b) = part.split_once(':').expect("colon");
             assert_eq!((a.parse(), b.parse()), (Ok(lo), Ok(hi)));
@@ -111,26 +86,11 @@ mod tests {
 
     #[test]
     fn bad_metadata_is_named() {
-        let words = WordTable {
-            tokens: vec!["<pad>".into(), "silk".into()],
-            vectors: vec![0.0; 2048],
-        };
+        let words = WordTable { tokens: vec!["<pad>".into(), "silk".into()], vectors: vec![0.0; 2048] };
         let bad = |m: ExportMeta| m.properties(&words).expect_err("bad").to_string();
         let ok = ExportMeta::default;
-        assert!(
-            bad(ExportMeta {
-                training_digest: "xyz".into(),
-                ..ok()
-            })
-            .contains("xyz")
-        );
-        assert!(
-            bad(ExportMeta {
-                model_name: "a\nb".into(),
-                ..ok()
-            })
-            .contains("name")
-        );
+        assert!(bad(ExportMeta { training_digest: "xyz".into(), ..ok() }).contains("xyz"));
+        assert!(bad(ExportMeta { model_name: "a\nb".into(), ..ok() }).contains("name"));
         let mut m = ok();
         m.channel_ranges_n_per_m[2] = (9.0, 3.0);
         assert!(bad(m).contains("9:3"));

@@ -40,18 +40,8 @@ impl ParityInput {
     /// [`ExportError::Input`] when the arrays are empty or do not belong to one batch size.
     pub fn batch(&self) -> Result<usize, ExportError> {
         let batch = self.tokens.len() / TOKENS;
-        let expected = [
-            batch * TOKENS,
-            batch * TOKENS,
-            batch * NOISE,
-            batch * GRID * GRID,
-        ];
-        let found = [
-            self.tokens.len(),
-            self.weights.len(),
-            self.noise.len(),
-            self.pin_distance.len(),
-        ];
+        let expected = [batch * TOKENS, batch * TOKENS, batch * NOISE, batch * GRID * GRID];
+        let found = [self.tokens.len(), self.weights.len(), self.noise.len(), self.pin_distance.len()];
         if batch == 0 || found != expected {
             return Err(ExportError::Input(format!(
                 "tokens, weights, noise and pin_distance have {found:?} numbers, a batch of {batch} has {expected:?}"
@@ -67,11 +57,7 @@ impl ParityInput {
 /// # Errors
 /// [`ExportError::Input`] for arrays that do not fit or a token outside the table, [`ExportError::Words`] for a bad
 /// table.
-pub fn run_rounded(
-    generator: &Generator,
-    words: &WordTable,
-    input: &ParityInput,
-) -> Result<ParitySample, ExportError> {
+pub fn run_rounded(generator: &Generator, words: &WordTable, input: &ParityInput) -> Result<ParitySample, ExportError> {
     super::words::check_words(words)?;
     let batch = input.batch()?;
     let mut descriptions = vec![0.0f32; batch * DESCRIPTION];
@@ -82,37 +68,22 @@ pub fn run_rounded(
         .zip(descriptions.chunks_exact_mut(DESCRIPTION))
     {
         for (token, weight) in tokens.iter().zip(weights) {
-            let row = usize::try_from(*token)
-                .ok()
-                .filter(|t| *t < words.tokens.len())
-                .ok_or_else(|| {
-                    ExportError::Input(format!(
-                        "token {token} is not a row of a table of {}",
-                        words.tokens.len()
-                    ))
-                })?;
-            for (s, x) in sum.iter_mut().zip(round(
-                &words.vectors[row * DESCRIPTION..(row + 1) * DESCRIPTION],
-            )) {
+            let row = usize::try_from(*token).ok().filter(|t| *t < words.tokens.len()).ok_or_else(|| {
+                ExportError::Input(format!("token {token} is not a row of a table of {}", words.tokens.len()))
+            })?;
+            for (s, x) in sum.iter_mut().zip(round(&words.vectors[row * DESCRIPTION..(row + 1) * DESCRIPTION])) {
                 *s += weight * x;
             }
         }
     }
     let rounded = round_to_f16(generator);
     let device = Device::flex();
-    let tensor = |values: Vec<f32>, columns: usize| {
-        Tensor::<2>::from_data(TensorData::new(values, [batch, columns]), &device)
-    };
+    let tensor =
+        |values: Vec<f32>, columns: usize| Tensor::<2>::from_data(TensorData::new(values, [batch, columns]), &device);
     let pins = tensor(input.pin_distance.clone(), GRID * GRID).reshape([batch, 1, GRID, GRID]);
-    let out = rounded.forward(
-        tensor(descriptions, DESCRIPTION),
-        tensor(input.noise.clone(), NOISE),
-        pins,
-    );
+    let out = rounded.forward(tensor(descriptions, DESCRIPTION), tensor(input.noise.clone(), NOISE), pins);
     let read = |data: TensorData, name: &str| {
-        data.try_into_vec::<f32>().map_err(|_| ExportError::Tensor {
-            tensor: name.into(),
-        })
+        data.try_into_vec::<f32>().map_err(|_| ExportError::Tensor { tensor: name.into() })
     };
     Ok(ParitySample {
         input: input.clone(),

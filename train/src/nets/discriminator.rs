@@ -43,12 +43,7 @@ pub struct DiscriminatorConfig {
 
 impl Default for DiscriminatorConfig {
     fn default() -> Self {
-        Self {
-            width: 16,
-            picture_channels: 1,
-            conditional: false,
-            projection: 64,
-        }
+        Self { width: 16, picture_channels: 1, conditional: false, projection: 64 }
     }
 }
 
@@ -69,16 +64,7 @@ impl DiscriminatorConfig {
             return Err(NetError::Projection(self.projection));
         }
         let mut b = LayerBuilder::new(seed, device);
-        let channels = [
-            self.picture_channels,
-            w,
-            2 * w,
-            4 * w,
-            8 * w,
-            8 * w,
-            8 * w,
-            8 * w,
-        ];
+        let channels = [self.picture_channels, w, 2 * w, 4 * w, 8 * w, 8 * w, 8 * w, 8 * w];
         let modules = (0..7)
             .map(|i| {
                 let (kernel, stride) = (if i < 2 { 5 } else { 3 }, if i < 6 { 2 } else { 1 });
@@ -92,11 +78,7 @@ impl DiscriminatorConfig {
             projection: b.linear(DESCRIPTION, self.projection),
             hidden: b.linear(8 * w + self.projection, 8 * w),
         });
-        Ok(Discriminator {
-            modules,
-            condition,
-            connected: b.linear(8 * w, 1),
-        })
+        Ok(Discriminator { modules, condition, connected: b.linear(8 * w, 1) })
     }
 }
 
@@ -148,11 +130,7 @@ impl Discriminator {
         let shortcut = x.clone().mean_dims(&[2, 3]);
         for (i, module) in self.modules[split..].iter().enumerate() {
             let y = module.forward(x);
-            let y = if i + 1 == RESIDUAL {
-                y + shortcut.clone()
-            } else {
-                y
-            };
+            let y = if i + 1 == RESIDUAL { y + shortcut.clone() } else { y };
             x = leaky_relu(y, LEAK);
         }
         let features: Tensor<2> = x.flatten(1, 3);
@@ -176,24 +154,8 @@ mod tests {
         let d = Device::flex();
         let ok = DiscriminatorConfig::default();
         let e = |c: DiscriminatorConfig| c.init(0, &d).expect_err("out of range");
-        assert_eq!(
-            e(DiscriminatorConfig { width: 257, ..ok }),
-            NetError::Width(257)
-        );
-        assert_eq!(
-            e(DiscriminatorConfig {
-                picture_channels: 0,
-                ..ok
-            }),
-            NetError::PictureChannels(0)
-        );
-        assert_eq!(
-            e(DiscriminatorConfig {
-                conditional: true,
-                projection: 0,
-                ..ok
-            }),
-            NetError::Projection(0)
-        );
+        assert_eq!(e(DiscriminatorConfig { width: 257, ..ok }), NetError::Width(257));
+        assert_eq!(e(DiscriminatorConfig { picture_channels: 0, ..ok }), NetError::PictureChannels(0));
+        assert_eq!(e(DiscriminatorConfig { conditional: true, projection: 0, ..ok }), NetError::Projection(0));
     }
 }

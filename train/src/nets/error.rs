@@ -16,11 +16,7 @@ pub enum NetError {
 impl fmt::Display for NetError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Width(w) => write!(
-                f,
-                "base width {w} is not between 1 and {}",
-                super::MAX_WIDTH
-            ),
+            Self::Width(w) => write!(f, "base width {w} is not between 1 and {}", super::MAX_WIDTH),
             Self::PictureChannels(c) => write!(f, "pictures of {c} channels: 1 to 4 are possible"),
             Self::Projection(p) => write!(
                 f,

@@ -85,18 +85,9 @@ pub struct Deconvolution {
 }
 
 impl Deconvolution {
-    fn new(
-        b: &mut LayerBuilder<'_>,
-        channels: usize,
-        raw: usize,
-        out: usize,
-        stride: usize,
-    ) -> Self {
+    fn new(b: &mut LayerBuilder<'_>, channels: usize, raw: usize, out: usize, stride: usize) -> Self {
         let taps = 9usize.div_ceil(stride * stride);
-        Self {
-            norm: b.batch_norm(channels),
-            deconvolution: b.deconvolution([channels + raw, out], 3, stride, taps),
-        }
+        Self { norm: b.batch_norm(channels), deconvolution: b.deconvolution([channels + raw, out], 3, stride, taps) }
     }
 
     fn forward(&self, x: Tensor<4>) -> Tensor<4> {
@@ -104,8 +95,7 @@ impl Deconvolution {
     }
 
     fn forward_with(&self, x: Tensor<4>, raw: Tensor<4>) -> Tensor<4> {
-        self.deconvolution
-            .forward(Tensor::cat(vec![self.norm.forward(x), raw], 1))
+        self.deconvolution.forward(Tensor::cat(vec![self.norm.forward(x), raw], 1))
     }
 }
 
@@ -143,12 +133,7 @@ impl Generator {
     /// Runs the network: description [batch, 1024], noise [batch, 128], distance to the nearest pin
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
-    pub fn forward(
-        &self,
-        description: Tensor<2>,
-        noise: Tensor<2>,
-        pin_distance: Tensor<4>,
-    ) -> GeneratorOutput {
+    pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
         let fabric = tanh(self.fabric.forward(description.clone()));
         let v = Tensor::cat(vec![description, noise], 1);
         let [batch, n] = v.dims();
@@ -158,9 +143,7 @@ impl Generator {
         let a2 = relu(self.second.forward(a1));
         let a3 = relu(self.third.forward(stitch(a2, 2)));
         let a4 = relu(self.fourth.forward(stitch(a3, 4)));
-        let a5 = self
-            .fifth
-            .forward_with(stitch(a4.clone(), 8), pin_distance.clone());
+        let a5 = self.fifth.forward_with(stitch(a4.clone(), 8), pin_distance.clone());
         let a5 = relu(a5 + a4);
         let field = tanh(self.sixth.forward_with(a5, pin_distance));
         GeneratorOutput { field, fabric }
@@ -184,9 +167,7 @@ impl Generator {
 /// Each pixel becomes a block of `times` x `times` equal ones.
 fn repeat(x: Tensor<4>, times: usize) -> Tensor<4> {
     let [b, c, h, w] = x.dims();
-    x.reshape([b, c, h, 1, w, 1])
-        .expand([b, c, h, times, w, times])
-        .reshape([b, c, h * times, w * times])
+    x.reshape([b, c, h, 1, w, 1]).expand([b, c, h, times, w, times]).reshape([b, c, h * times, w * times])
 }
 
 #[cfg(test)]
@@ -196,24 +177,14 @@ mod tests {
 
     #[test]
     fn repeat_makes_blocks() {
-        let x = Tensor::<4>::from_data(
-            TensorData::new(vec![1.0f32, 2.0, 3.0, 4.0], [1, 1, 2, 2]),
-            &Device::flex(),
-        );
+        let x = Tensor::<4>::from_data(TensorData::new(vec![1.0f32, 2.0, 3.0, 4.0], [1, 1, 2, 2]), &Device::flex());
         let y: Vec<f32> = repeat(x, 2).into_data().try_into_vec().expect("f32");
-        assert_eq!(
-            y,
-            [
-                1., 1., 2., 2., 1., 1., 2., 2., 3., 3., 4., 4., 3., 3., 4., 4.
-            ]
-        );
+        assert_eq!(y, [1., 1., 2., 2., 1., 1., 2., 2., 3., 3., 4., 4., 3., 3., 4., 4.]);
     }
 
     #[test]
     fn a_width_of_zero_is_an_error() {
-        let e = GeneratorConfig { width: 0 }
-            .init(1, &Device::flex())
-            .expect_err("zero");
+        let e = GeneratorConfig { width: 0 }.init(1, &Device::flex()).expect_err("zero");
         assert_eq!(e, NetError::Width(0));
         assert!(e.to_string().contains('0'));
     }

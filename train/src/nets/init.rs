@@ -44,21 +44,12 @@ pub struct LayerBuilder<'a> {
 impl<'a> LayerBuilder<'a> {
     /// Layers on `device`, weights from `seed`.
     pub fn new(seed: u64, device: &'a Device) -> Self {
-        Self {
-            stream: SplitMix64::new(seed),
-            device,
-        }
+        Self { stream: SplitMix64::new(seed), device }
     }
 
-    fn tensor<const D: usize>(
-        &mut self,
-        shape: [usize; D],
-        fan_in: usize,
-    ) -> Param<burn::Tensor<D>> {
+    fn tensor<const D: usize>(&mut self, shape: [usize; D], fan_in: usize) -> Param<burn::Tensor<D>> {
         let bound = 1.0 / (fan_in.max(1) as f32).sqrt();
-        let values: Vec<f32> = (0..shape.iter().product())
-            .map(|_| self.stream.uniform() * bound)
-            .collect();
+        let values: Vec<f32> = (0..shape.iter().product()).map(|_| self.stream.uniform() * bound).collect();
         Param::from_data(TensorData::new(values, shape), self.device)
     }
 
@@ -118,10 +109,7 @@ mod tests {
     fn the_stream_is_splitmix64_and_stays_in_its_range() {
         // First outputs for seed 1234567 in the reference implementation.
         let mut s = SplitMix64::new(1_234_567);
-        assert_eq!(
-            [s.next_u64(), s.next_u64()],
-            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]
-        );
+        assert_eq!([s.next_u64(), s.next_u64()], [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
         let mut s = SplitMix64::new(9);
         let v: Vec<f32> = (0..20_000).map(|_| s.uniform()).collect();
         assert!(v.iter().all(|x| (-1.0..1.0).contains(x)));
