@@ -58,11 +58,7 @@ impl Cloth<'_> {
         let gradient: Vec<f64> = self.pattern.free.iter().flat_map(|&i| all[i]).collect();
         // A number that is not finite must not be lost in the maximum.
         let larger = |most: f64, g: &f64| {
-            if g.is_nan() {
-                f64::INFINITY
-            } else {
-                most.max(g.abs())
-            }
+            if g.is_nan() { f64::INFINITY } else { most.max(g.abs()) }
         };
         let largest = gradient.iter().fold(0.0, larger);
         (gradient, largest)
@@ -128,11 +124,7 @@ impl Cloth<'_> {
             }
         }
         x.copy_from_slice(&here.x);
-        Outcome {
-            residual_n: here.residual,
-            iterations,
-            settled,
-        }
+        Outcome { residual_n: here.residual, iterations, settled }
     }
 
     /// The free particles of `x` moved by `length` times `step`.
@@ -149,30 +141,20 @@ impl Cloth<'_> {
     fn place(&self, x: Vec<[f64; 3]>) -> Place {
         let (energy, size) = self.energy(&x);
         let (gradient, residual) = self.gradient(&x);
-        Place {
-            x,
-            energy,
-            size,
-            gradient,
-            residual,
-        }
+        Place { x, energy, size, gradient, residual }
     }
 
     /// Line search from `here` along `step`: the number of halvings, whether the step was clipped, and the place found.
     fn search(&self, here: &Place, step: &[f64], minimum: bool) -> (usize, bool, Option<Place>) {
         let longest_m = 0.1 * self.springs.width_m().max(self.springs.height_m());
         let slope: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
-        let longest = step
-            .chunks_exact(3)
-            .map(|s| s[0].hypot(s[1]).hypot(s[2]))
-            .fold(0.0, f64::max);
+        let longest = step.chunks_exact(3).map(|s| s[0].hypot(s[1]).hypot(s[2])).fold(0.0, f64::max);
         let clipped = longest > longest_m;
         let mut length = if clipped { longest_m / longest } else { 1.0 };
         for halvings in 0..30 {
             let next = self.place(self.moved(&here.x, step, length));
             // Near the minimum the energy no longer resolves a step; the force does.
-            let level =
-                next.energy <= here.energy + 1e-13 * here.size && next.residual < here.residual;
+            let level = next.energy <= here.energy + 1e-13 * here.size && next.residual < here.residual;
             if (minimum && level) || next.energy <= here.energy + 1e-4 * length * slope {
                 return (halvings, clipped, Some(next));
             }
@@ -252,18 +234,8 @@ mod tests {
         let pattern = Pattern::new(&springs, &pinned).unwrap();
         let stiffness: Vec<f64> = (0..springs.list().len()).map(|j| 10.0 + j as f64).collect();
         let weight_n = [0.1, -0.5, 0.2];
-        let cloth = Cloth {
-            springs: &springs,
-            pattern: &pattern,
-            stiffness: &stiffness,
-            weight_n,
-            limit: true,
-        };
-        let bent = |i: usize| {
-            springs
-                .hung_flat(i)
-                .map(|x| 1.1 * x + 0.05 * (3.0 * x + i as f64).sin())
-        };
+        let cloth = Cloth { springs: &springs, pattern: &pattern, stiffness: &stiffness, weight_n, limit: true };
+        let bent = |i: usize| springs.hung_flat(i).map(|x| 1.1 * x + 0.05 * (3.0 * x + i as f64).sin());
         let x: Vec<[f64; 3]> = (0..12).map(bent).collect();
         let (gradient, largest) = cloth.gradient(&x);
         assert_eq!(largest, gradient.iter().fold(0.0, |m, g| g.abs().max(m)));
@@ -283,19 +255,9 @@ mod tests {
         let springs = Springs::new(3, 2, 0.5, 1.0).unwrap();
         let pinned: Vec<bool> = (0..6).map(|i| i < 2).collect();
         let pattern = Pattern::new(&springs, &pinned).unwrap();
-        let stiffness: Vec<f64> = springs
-            .list()
-            .iter()
-            .map(|s| if s.channel == 3 { 0.0 } else { 100.0 })
-            .collect();
+        let stiffness: Vec<f64> = springs.list().iter().map(|s| if s.channel == 3 { 0.0 } else { 100.0 }).collect();
         let weight_n = [0.0, -0.1, 0.0];
-        let cloth = Cloth {
-            springs: &springs,
-            pattern: &pattern,
-            stiffness: &stiffness,
-            weight_n,
-            limit: true,
-        };
+        let cloth = Cloth { springs: &springs, pattern: &pattern, stiffness: &stiffness, weight_n, limit: true };
         let mut x: Vec<[f64; 3]> = (0..6).map(|i| springs.hung_flat(i).map(|x| -x)).collect();
         let outcome = cloth.settle(&mut x, 1e-9, 300);
         assert!(outcome.settled, "{outcome:?}");

@@ -52,42 +52,21 @@ impl fmt::Display for ClothError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ClothError::GridSize { rows, columns } => {
-                write!(
-                    f,
-                    "a grid of {rows} x {columns} particles: each side must have 2 to 4096"
-                )
+                write!(f, "a grid of {rows} x {columns} particles: each side must have 2 to 4096")
             }
             ClothError::OutOfRange { what, value } => write!(f, "{what} is {value}, out of range"),
             ClothError::Pin { particle } => {
-                write!(
-                    f,
-                    "the pin on particle {particle}: no such particle, or it is pinned already"
-                )
+                write!(f, "the pin on particle {particle}: no such particle, or it is pinned already")
             }
-            ClothError::Pins => write!(
-                f,
-                "a cloth at rest needs at least one pinned and one free particle"
-            ),
-            ClothError::Stiffness {
-                item,
-                channel,
-                row,
-                column,
-            } => write!(
+            ClothError::Pins => write!(f, "a cloth at rest needs at least one pinned and one free particle"),
+            ClothError::Stiffness { item, channel, row, column } => write!(
                 f,
                 "the stiffness of item {item}, channel {channel}, row {row}, column {column} is negative or not finite"
             ),
-            ClothError::Shape {
-                what,
-                expected,
-                found,
-            } => {
+            ClothError::Shape { what, expected, found } => {
                 write!(f, "{what} has the shape {found:?}, expected {expected:?}")
             }
-            ClothError::Factorisation => write!(
-                f,
-                "the sparse factorisation could not be prepared: out of memory"
-            ),
+            ClothError::Factorisation => write!(f, "the sparse factorisation could not be prepared: out of memory"),
         }
     }
 }

@@ -4,8 +4,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
@@ -77,14 +76,7 @@ impl Pattern {
             },
         )
         .map_err(|_| ClothError::Factorisation)?;
-        Ok(Pattern {
-            free,
-            slot,
-            column_start,
-            row_index,
-            rank,
-            cholesky,
-        })
+        Ok(Pattern { free, slot, column_start, row_index, rank, cholesky })
     }
 
     /// Whether a particle is pinned.
@@ -123,14 +115,7 @@ impl<'a> Hessian<'a> {
 
     /// Fills in the second derivatives of the springs' energy at `x` (m, one entry per particle). `convex` takes the
     /// positive semidefinite part of every spring.
-    pub fn assemble(
-        &mut self,
-        springs: &Springs,
-        stiffness: &[f64],
-        x: &[[f64; 3]],
-        limit: bool,
-        convex: bool,
-    ) {
+    pub fn assemble(&mut self, springs: &Springs, stiffness: &[f64], x: &[[f64; 3]], limit: bool, convex: bool) {
         let p = self.pattern;
         self.values.fill(0.0);
         for ((s, &k), &rank) in springs.list().iter().zip(stiffness).zip(&p.rank) {
@@ -178,8 +163,7 @@ impl<'a> Hessian<'a> {
     pub fn factorise(&mut self) -> bool {
         let p = self.pattern;
         let n = p.unknowns();
-        let symbolic =
-            SymbolicSparseColMatRef::new_checked(n, n, &p.column_start, None, &p.row_index);
+        let symbolic = SymbolicSparseColMatRef::new_checked(n, n, &p.column_start, None, &p.row_index);
         p.cholesky
             .factorize_numeric_llt(
                 &mut self.factor,
@@ -223,12 +207,7 @@ mod tests {
                 [1.1 * u, 1.2 * v, 0.02 * ((i * i) as f64).sin()]
             })
             .collect();
-        let k: Vec<f64> = springs
-            .list()
-            .iter()
-            .enumerate()
-            .map(|(j, _)| 100.0 + j as f64)
-            .collect();
+        let k: Vec<f64> = springs.list().iter().enumerate().map(|(j, _)| 100.0 + j as f64).collect();
         hessian.assemble(&springs, &k, &x, true, true);
         hessian.shift(1.0);
         assert!(hessian.factorise());
@@ -243,9 +222,7 @@ mod tests {
             let h = Law::new(d, s.rest_m, true).hessian(true);
             let rows = [[h[0], h[1], h[2]], [h[1], h[3], h[4]], [h[2], h[4], h[5]]];
             for c in 0..3 {
-                let force: f64 = (0..3)
-                    .map(|e| k * rows[c][e] * (at(s.b, e) - at(s.a, e)))
-                    .sum();
+                let force: f64 = (0..3).map(|e| k * rows[c][e] * (at(s.b, e) - at(s.a, e))).sum();
                 if let Some(f) = pattern.slot[s.b] {
                     back[3 * f + c] += force;
                 }
@@ -262,13 +239,7 @@ mod tests {
     #[test]
     fn wants_pinned_and_free_particles() {
         let springs = Springs::new(2, 2, 1.0, 1.0).unwrap();
-        assert_eq!(
-            Pattern::new(&springs, &[false; 4]).unwrap_err(),
-            ClothError::Pins
-        );
-        assert_eq!(
-            Pattern::new(&springs, &[true; 4]).unwrap_err(),
-            ClothError::Pins
-        );
+        assert_eq!(Pattern::new(&springs, &[false; 4]).unwrap_err(), ClothError::Pins);
+        assert_eq!(Pattern::new(&springs, &[true; 4]).unwrap_err(), ClothError::Pins);
     }
 }

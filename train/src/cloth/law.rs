@@ -24,20 +24,10 @@ impl Law {
         if limit && length < 0.5 * rest {
             // Continuous with the energy of the spring at half its length.
             let energy = 0.25 * rest * rest - 0.5 * length * length;
-            return Law {
-                normal,
-                energy,
-                factor: -1.0,
-                along: -1.0,
-            };
+            return Law { normal, energy, factor: -1.0, along: -1.0 };
         }
         let stretch = length - rest;
-        Law {
-            normal,
-            energy: 0.5 * stretch * stretch,
-            factor: 1.0 - rest / length,
-            along: 1.0,
-        }
+        Law { normal, energy: 0.5 * stretch * stretch, factor: 1.0 - rest / length, along: 1.0 }
     }
 
     /// Upper triangle (xx, xy, xz, yy, yz, zz) of the 3 x 3 Hessian with respect to the elongation vector:
@@ -45,11 +35,7 @@ impl Law {
     /// compression, whose place the plain spring takes.
     #[inline]
     pub fn hessian(&self, convex: bool) -> [f64; 6] {
-        let (across, along) = if convex {
-            (self.factor.max(0.0), 1.0)
-        } else {
-            (self.factor, self.along)
-        };
+        let (across, along) = if convex { (self.factor.max(0.0), 1.0) } else { (self.factor, self.along) };
         let (n, w) = (self.normal, along - across);
         [
             across + w * n[0] * n[0],
@@ -68,11 +54,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_energy() {
-        for (d, limit) in [
-            ([0.3, -0.9, 0.4], true),
-            ([0.2, 0.3, 0.1], false),
-            ([0.2, 0.3, 0.1], true),
-        ] {
+        for (d, limit) in [([0.3, -0.9, 0.4], true), ([0.2, 0.3, 0.1], false), ([0.2, 0.3, 0.1], true)] {
             let law = Law::new(d, 1.0, limit);
             assert_eq!(law.factor == -1.0, limit && d[0] < 0.25);
             let h = law.hessian(false);

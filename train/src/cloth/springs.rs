@@ -40,12 +40,7 @@ pub struct Springs {
 impl Springs {
     /// The network of `rows` x `columns` particles (2 to 4096 each), `width_m` along u and `height_m` along v (above 0,
     /// at most 10,000 m). Errors: [`ClothError::GridSize`], [`ClothError::OutOfRange`].
-    pub fn new(
-        rows: usize,
-        columns: usize,
-        width_m: f64,
-        height_m: f64,
-    ) -> Result<Springs, ClothError> {
+    pub fn new(rows: usize, columns: usize, width_m: f64, height_m: f64) -> Result<Springs, ClothError> {
         let side = |n: usize| (2..=4096).contains(&n);
         if !side(rows) || !side(columns) {
             return Err(ClothError::GridSize { rows, columns });
@@ -55,13 +50,7 @@ impl Springs {
                 return Err(ClothError::OutOfRange { what, value });
             }
         }
-        let mut springs = Springs {
-            rows,
-            columns,
-            width_m,
-            height_m,
-            list: Vec::new(),
-        };
+        let mut springs = Springs { rows, columns, width_m, height_m, list: Vec::new() };
         for row in 0..rows {
             for column in 0..columns {
                 springs.add(row, column, 0, 1, WEFT);
@@ -77,16 +66,10 @@ impl Springs {
 
     /// Adds the spring from (row, column) by (down, right) cells where its other end exists.
     fn add(&mut self, row: usize, column: usize, down: usize, right: isize, channel: usize) {
-        let Some(to) = column
-            .checked_add_signed(right)
-            .filter(|&c| c < self.columns && row + down < self.rows)
-        else {
+        let Some(to) = column.checked_add_signed(right).filter(|&c| c < self.columns && row + down < self.rows) else {
             return;
         };
-        let (u, v) = (
-            right as f64 * self.rest_u_m(),
-            down as f64 * self.rest_v_m(),
-        );
+        let (u, v) = (right as f64 * self.rest_u_m(), down as f64 * self.rest_v_m());
         let rest_m = u.hypot(v);
         self.list.push(Spring {
             a: row * self.columns + column,
@@ -140,10 +123,7 @@ impl Springs {
     /// Place (u, v) in m of a particle in the flat sheet; row 0 has v = 0.
     pub fn flat(&self, particle: usize) -> [f64; 2] {
         let (row, column) = (particle / self.columns, particle % self.columns);
-        [
-            column as f64 * self.rest_u_m(),
-            row as f64 * self.rest_v_m(),
-        ]
+        [column as f64 * self.rest_u_m(), row as f64 * self.rest_v_m()]
     }
 
     /// World position in m of a particle of the flat sheet that hangs vertically from row 0: (u, -v, 0).
@@ -161,39 +141,21 @@ mod tests {
     fn counts_and_lengths() {
         let s = Springs::new(3, 4, 3.0, 4.0).unwrap();
         let count = |c| s.list().iter().filter(|s| s.channel == c).count();
-        assert_eq!(
-            [count(WARP), count(WEFT), count(SHEAR), count(BEND)],
-            [8, 9, 12, 10]
-        );
+        assert_eq!([count(WARP), count(WEFT), count(SHEAR), count(BEND)], [8, 9, 12, 10]);
         for spring in s.list() {
             assert!(spring.a < spring.b && spring.b < 12);
             let [p, q] = [s.flat(spring.a), s.flat(spring.b)];
             assert!(((q[0] - p[0]).hypot(q[1] - p[1]) - spring.rest_m).abs() < 1e-15);
         }
-        assert_eq!(
-            s.list().iter().find(|s| s.channel == WARP).unwrap().rest_m,
-            2.0
-        );
+        assert_eq!(s.list().iter().find(|s| s.channel == WARP).unwrap().rest_m, 2.0);
         assert_eq!(s.hung_flat(11), [3.0, -4.0, 0.0]);
     }
 
     #[test]
     fn refuses_bad_grids() {
-        assert!(matches!(
-            Springs::new(1, 1, 1.0, 1.0),
-            Err(ClothError::GridSize { .. })
-        ));
-        assert!(matches!(
-            Springs::new(70_000, 2, 1.0, 1.0),
-            Err(ClothError::GridSize { .. })
-        ));
-        assert!(matches!(
-            Springs::new(2, 2, f64::NAN, 1.0),
-            Err(ClothError::OutOfRange { .. })
-        ));
-        assert!(matches!(
-            Springs::new(2, 2, 1.0, 0.0),
-            Err(ClothError::OutOfRange { .. })
-        ));
+        assert!(matches!(Springs::new(1, 1, 1.0, 1.0), Err(ClothError::GridSize { .. })));
+        assert!(matches!(Springs::new(70_000, 2, 1.0, 1.0), Err(ClothError::GridSize { .. })));
+        assert!(matches!(Springs::new(2, 2, f64::NAN, 1.0), Err(ClothError::OutOfRange { .. })));
+        assert!(matches!(Springs::new(2, 2, 1.0, 0.0), Err(ClothError::OutOfRange { .. })));
     }
 }
