@@ -30,8 +30,9 @@ here=$("$folder/host/release/taut-bare")
 
 env -u RUSTUP_TOOLCHAIN RUSTC="$debian_rustc" RUSTC_BOOTSTRAP=1 CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER="$lld" \
   "$debian_cargo" build --release --locked -Zbuild-std=core --target "$target" --target-dir "$folder/$target"
+# the emulator shows what the program writes on standard error
 there=$(timeout 120 qemu-system-arm -M mps2-an386 -nographic -semihosting-config enable=on,target=native \
-  -kernel "$folder/$target/$target/release/taut-bare" < /dev/null)
+  -kernel "$folder/$target/$target/release/taut-bare" 2>&1 < /dev/null)
 
 echo "x86_64 $here"
 echo "$target $there"
