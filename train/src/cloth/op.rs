@@ -256,60 +256,68 @@ mod tests {
     }
 
     #[test]
-    fn gradient_through_burn_agrees_with_finite_differences() {
+    fn gradient_through_burn_is_that_of_the_solutions() {
         let device = Device::flex().autodiff();
-        let mut scenes = scenes();
-        // Operations before and after: exp and a weighted sum.
-        let log: Vec<f32> = numbers().iter().map(|k| k.ln()).collect();
-        let input = tensor(log.clone(), &device).require_grad();
-        let shape = equilibrium(input.clone().exp(), &mut scenes).unwrap();
+        let field = tensor(numbers(), &device).require_grad();
+        let mut through_burn = scenes();
+        let shape = equilibrium(field.clone(), &mut through_burn).unwrap();
         assert_eq!(shape.dims(), [3, SIDE * SIDE, 3]);
         let loss = (shape * weights(&device)).sum();
-        let gradient = input
-            .grad(&loss.backward())
-            .unwrap()
-            .into_data()
-            .try_into_vec::<f32>()
-            .unwrap();
-        assert!(scenes.iter().all(|s| s.start().is_some()));
-        // Along one random direction per item and channel, in f64 but for the field.
-        let plain = Device::flex();
-        for part in 0..12 {
-            let range = part * SIDE * SIDE..(part + 1) * SIDE * SIDE;
-            let direction = |j: usize| {
-                if range.contains(&j) {
-                    (j as f32 * 2.3).sin()
-                } else {
-                    0.0
-                }
-            };
-            let mut at = |h: f32| {
-                let moved = log
-                    .iter()
-                    .enumerate()
-                    .map(|(j, x)| x + h * direction(j))
-                    .collect();
-                let shape = equilibrium(tensor(moved, &plain).exp(), &mut scenes).unwrap();
-                let parts = (shape * weights(&plain))
-                    .into_data()
-                    .try_into_vec::<f32>()
-                    .unwrap();
-                parts.into_iter().map(f64::from).sum::<f64>()
-            };
-            let difference = (at(0.02) - at(-0.02)) / 0.04;
-            let expected: f64 = range
-                .clone()
-                .map(|j| f64::from(gradient[j] * direction(j)))
-                .sum();
-            let size: f64 = range
-                .clone()
-                .map(|j| f64::from((gradient[j] * direction(j)).abs()))
-                .sum();
-            assert!(
-                (difference - expected).abs() < 2e-3 * size + 2e-5,
-                "{part}: {difference} {expected} {size}"
-            );
+        let gradient = field.grad(&loss.backward()).unwrap();
+        assert_eq!(gradient.dims(), [3, 4, SIDE, SIDE]);
+        let gradient = gradient.into_data().try_into_vec::<f32>().unwrap();
+        let weights = weights(&device).into_data().try_into_vec::<f32>().unwrap();
+        let length = 4 * SIDE * SIDE;
+        for (item, mut scene) in scenes().into_iter().enumerate() {
+            let field: Vec<f64> = numbers()[item * length..][..length]
+                .iter()
+                .map(|&k| f64::from(k))
+                .collect();
+            let solution = scene.solve(&field).unwrap();
+            assert_eq!(Some(solution.positions()), through_burn[item].start());
+            let by_position: Vec<[f64; 3]> = weights[item * SIDE * SIDE * 3..][..SIDE * SIDE * 3]
+                .chunks_exact(3)
+                .map(|w| [w[0], w[1], w[2]].map(f64::from))
+                .collect();
+            let expected = solution.gradient(&by_position).unwrap();
+            assert!(expected.iter().any(|g| *g != 0.0));
+            for (found, expected) in gradient[item * length..].iter().zip(&expected) {
+                assert_eq!(*found, *expected as f32);
+            }
         }
+    }
+
+    #[test]
+    fn descends_through_operations_before_and_after() {
+        // Log stiffness in, mean height of the lower edge out: following the gradient lifts the edge as much as it says.
+        let device = Device::flex().autodiff();
+        let mut scenes = scenes();
+        let mut height = |log: Vec<f32>| {
+            let log = tensor(log, &device).require_grad();
+            let shape = equilibrium(log.clone().exp(), &mut scenes).unwrap();
+            let lower = shape
+                .slice([0..3, (SIDE - 1) * SIDE..SIDE * SIDE, 1..2])
+                .mean();
+            let gradient = log.grad(&lower.backward()).unwrap();
+            (
+                lower.into_scalar::<f32>(),
+                gradient.into_data().try_into_vec::<f32>().unwrap(),
+            )
+        };
+        let log: Vec<f32> = numbers().iter().map(|k| k.ln()).collect();
+        let (before, gradient) = height(log.clone());
+        let norm = gradient.iter().map(|g| g * g).sum::<f32>();
+        let rate = 0.05 / gradient.iter().fold(0.0, |m: f32, g| m.max(g.abs()));
+        let moved = |sign: f32| {
+            log.iter()
+                .zip(&gradient)
+                .map(|(x, g)| x + sign * rate * g)
+                .collect()
+        };
+        let (above, below) = (height(moved(1.0)).0, height(moved(-1.0)).0);
+        let (found, expected) = ((above - below) / 2.0, rate * norm);
+        assert!(above > before && before > below);
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
     }
 
     #[test]

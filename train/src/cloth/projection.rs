@@ -245,7 +245,7 @@ mod tests {
         // Clamped everywhere but at the pins, partly, and nowhere.
         for (dt, least, most) in [
             (1.0 / 120.0, 0.3, 0.99),
-            (1.0 / 360.0, 0.01, 0.7),
+            (1.0 / 600.0, 0.01, 0.7),
             (1.0 / 20_000.0, 0.0, 0.0),
         ] {
             let (springs, budget, field) = setting(dt);

@@ -63,7 +63,7 @@ fn gradient_error(pins: &[usize], dt_s: f64, k: [f64; 4]) -> (f64, f64) {
             .iter()
             .fold(0.0, |m: f64, g| m.max(g.abs()));
         for j in range {
-            let h = 1e-5 * field[j];
+            let h = 3e-4 * field[j];
             let mut loss = |h: f64| {
                 let mut moved = field.clone();
                 moved[j] += h;
@@ -77,25 +77,6 @@ fn gradient_error(pins: &[usize], dt_s: f64, k: [f64; 4]) -> (f64, f64) {
                     .sum::<f64>()
             };
             let difference = (loss(h) - loss(-h)) / (2.0 * h);
-            {
-                let e = (difference - gradient[j]).abs()
-                    / difference.abs().max(0.01 * size).max(1e-300);
-                if e > 1e-4 {
-                    let d2 = (loss(100. * h) - loss(-100. * h)) / (200. * h);
-                    let d3 = (loss(0.1 * h) - loss(-0.1 * h)) / (0.2 * h);
-                    eprintln!(
-                        "pins {} dt {dt_s:.5} ch {channel} i {} err {e:.2e} fd {difference:.6e} {d2:.6e} {d3:.6e} grad {:.6e} size {size:.3e} s {:?} near {:?}",
-                        pins.len(),
-                        j % 64,
-                        gradient[j],
-                        base.projection().scale()[j % 64],
-                        [1usize, 8, 2, 16, 7, 9].map(|o| (
-                            base.projection().scale()[(j % 64 + o) % 64],
-                            base.projection().scale()[(j % 64 + 64 - o) % 64]
-                        ))
-                    );
-                }
-            }
             worst = worst.max(
                 (difference - gradient[j]).abs() / difference.abs().max(0.01 * size).max(1e-300),
             );
@@ -121,11 +102,7 @@ fn gradient_agrees_with_finite_differences() {
                 "{} pins, dt {dt_s}: cut {found}",
                 pins.len()
             );
-            assert!(
-                error < 1e-3 || true,
-                "{} pins, dt {dt_s}: {error}",
-                pins.len()
-            );
+            assert!(error < 1e-3, "{} pins, dt {dt_s}: {error}", pins.len());
         }
     }
 }
