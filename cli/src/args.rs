@@ -113,12 +113,10 @@ pub struct Info {
 /// What to do where the arguments did not parse: help and version go to stdout, all else is a failure in one line.
 pub fn answer(e: &clap::Error) -> Result<(), Failure> {
     match e.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            failure::print(&e.render().to_string())
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => failure::print(&e.render().to_string()),
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            Err(Failure::new("no command: give drape, correct or info (taut --help tells more)"))
         }
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => Err(
-            Failure::new("no command: give drape, correct or info (taut --help tells more)"),
-        ),
         _ => Err(Failure::new(short(&e.render().to_string()))),
     }
 }

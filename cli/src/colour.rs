@@ -42,15 +42,9 @@ pub fn style(description: &str) -> Style {
             Some("light" | "pale" | "sky") => colour.map(|c| c + (255 - c) / 3),
             _ => *colour,
         };
-        return Style {
-            fabric,
-            ramp: *ramp,
-        };
+        return Style { fabric, ramp: *ramp };
     }
-    Style {
-        fabric: NEUTRAL,
-        ramp: Ramp::Heat,
-    }
+    Style { fabric: NEUTRAL, ramp: Ramp::Heat }
 }
 
 #[cfg(test)]

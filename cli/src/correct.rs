@@ -48,12 +48,7 @@ pub fn run(args: &args::Correct) -> Result<(), Failure> {
         let json = serde_json::to_string_pretty(&written).map_err(Failure::new)?;
         return failure::print(&format!("{json}\n"));
     }
-    let Stiffness {
-        warp,
-        weft,
-        shear,
-        bend,
-    } = told.median_stiffness_n_per_m;
+    let Stiffness { warp, weft, shear, bend } = told.median_stiffness_n_per_m;
     let limits = told.stretch_limits;
     let percent = |x: f32| notes::number(100.0 * f64::from(x));
     failure::print(&format!(

@@ -59,19 +59,9 @@ fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
         }
     };
     let cloth = &args.cloth;
-    let step = ClothDef {
-        rate_hz: args.rate,
-        substeps: args.substeps,
-        density_kg_m2,
-        ..ClothDef::default()
-    };
+    let step = ClothDef { rate_hz: args.rate, substeps: args.substeps, density_kg_m2, ..ClothDef::default() };
     step.check().map_err(|e| {
-        Failure::new(format_args!(
-            "{} Hz x {} substeps is a step of {} s: {e}",
-            args.rate,
-            args.substeps,
-            step.dt_s()
-        ))
+        Failure::new(format_args!("{} Hz x {} substeps is a step of {} s: {e}", args.rate, args.substeps, step.dt_s()))
     })?;
     Ok(Case {
         scene: cloth.scene,

@@ -48,12 +48,10 @@ pub fn complain(text: &str) {
 /// Writes text to stdout as it is.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .map_err(|e| match e.kind() {
-            ErrorKind::BrokenPipe => Failure::ClosedPipe,
-            _ => Failure::new(format_args!("cannot write to stdout: {e}")),
-        })
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| match e.kind() {
+        ErrorKind::BrokenPipe => Failure::ClosedPipe,
+        _ => Failure::new(format_args!("cannot write to stdout: {e}")),
+    })
 }
 
 /// Writes text to stderr as it is; what cannot be written there is lost.
@@ -64,9 +62,7 @@ pub fn print_aside(text: &str) {
 /// A bug must look like one, in one line, not like a page of the program's inside.
 pub fn quiet_panics() {
     std::panic::set_hook(Box::new(|panic| {
-        let at = panic
-            .location()
-            .map_or(String::new(), |l| format!(" at {}:{}", l.file(), l.line()));
+        let at = panic.location().map_or(String::new(), |l| format!(" at {}:{}", l.file(), l.line()));
         complain(&format!(
             "internal error{at}, please report it: {}",
             panic.payload_as_str().unwrap_or("unknown reason")

@@ -29,12 +29,7 @@ pub fn load(path: Option<&Path>) -> Result<Generator, Failure> {
 pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
     let generator = load(args.model.as_deref())?;
     let columns = args.grid.columns as usize;
-    let pins: Vec<(usize, usize)> = args
-        .scene
-        .pins(columns)
-        .into_iter()
-        .map(|p| (p / columns, p % columns))
-        .collect();
+    let pins: Vec<(usize, usize)> = args.scene.pins(columns).into_iter().map(|p| (p / columns, p % columns)).collect();
     let correction = generator.correct(&Request {
         description: &args.description,
         seed: args.seed,
@@ -62,11 +57,8 @@ fn warn(c: &Correction, limit: usize) {
 /// Words for a message: the first eight, each cut at 40 letters.
 fn quoted(words: &[String]) -> String {
     const SHOWN: usize = 8;
-    let mut list: Vec<String> = words
-        .iter()
-        .take(SHOWN)
-        .map(|w| format!("`{}`", w.chars().take(40).collect::<String>()))
-        .collect();
+    let mut list: Vec<String> =
+        words.iter().take(SHOWN).map(|w| format!("`{}`", w.chars().take(40).collect::<String>())).collect();
     if words.len() > SHOWN {
         list.push(format!("{} more", words.len() - SHOWN));
     }

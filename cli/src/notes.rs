@@ -27,11 +27,7 @@ pub fn fills_the_budget(name: &str) -> bool {
 
 /// How much of K was cut, in percent.
 pub fn cut(s: &Setting) -> String {
-    if fills_the_budget(s.name) {
-        "-".into()
-    } else {
-        format!("{:.0}", 100.0 * s.cut_fraction)
-    }
+    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction) }
 }
 
 /// CPU time of a frame in microseconds.
@@ -42,9 +38,8 @@ pub fn us_per_frame(s: &Setting, grid: [u32; 2]) -> f64 {
 
 /// The table of all settings with a line that explains its columns.
 pub fn table(report: &Report) -> String {
-    let header = [
-        "setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns", "us/frame", "finite",
-    ];
+    let header =
+        ["setting", "substeps", "max %", "p99 %", "mean %", "ex-pin %", "peak %", "cut %", "ns", "us/frame", "finite"];
     let rows: Vec<Vec<String>> = report
         .settings
         .iter()
@@ -84,10 +79,7 @@ pub fn setup(report: &Report) -> String {
 
 /// Stiffness in a few words.
 pub fn stiffness(k: Stiffness) -> String {
-    format!(
-        "warp {:.0}, weft {:.0}, shear {:.1}, bend {:.2} N/m",
-        k.warp, k.weft, k.shear, k.bend
-    )
+    format!("warp {:.0}, weft {:.0}, shear {:.1}, bend {:.2} N/m", k.warp, k.weft, k.shear, k.bend)
 }
 
 fn points(what: &str, d: Difference) -> String {
@@ -131,10 +123,7 @@ pub fn notes(report: &Report) -> Vec<String> {
     }
     let moving = named(&|s| s.finite && s.rms_speed_m_s > AT_REST_M_S);
     if !moving.is_empty() {
-        notes.push(format!(
-            "Still moving after {} s, so not the stretch at rest: {moving}.",
-            report.seconds
-        ));
+        notes.push(format!("Still moving after {} s, so not the stretch at rest: {moving}.", report.seconds));
     }
     notes
 }

@@ -24,17 +24,12 @@ pub struct Sides {
 fn within(text: &str, bounds: RangeInclusive<f32>, unit: &str) -> Result<f32, String> {
     let wrong = || format!("must be {} to {}{unit}", bounds.start(), bounds.end());
     let number: f32 = text.trim().parse().map_err(|_| wrong())?;
-    if bounds.contains(&number) {
-        Ok(number)
-    } else {
-        Err(wrong())
-    }
+    if bounds.contains(&number) { Ok(number) } else { Err(wrong()) }
 }
 
 /// The two halves of `AxB`.
 fn pair<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a str), String> {
-    text.split_once(['x', 'X', '\u{d7}'])
-        .ok_or_else(|| format!("give two numbers, for example {example}"))
+    text.split_once(['x', 'X', '\u{d7}']).ok_or_else(|| format!("give two numbers, for example {example}"))
 }
 
 /// `ROWSxCOLUMNS`.
@@ -42,24 +37,16 @@ pub fn grid(text: &str) -> Result<GridSize, String> {
     let (rows, columns) = pair(text, "32x32")?;
     let side = |s: &str| {
         let number = s.trim().parse::<u32>().ok();
-        number
-            .filter(|n| (2..=taut::Grid::MAX_SIDE).contains(n))
-            .ok_or("each side needs 2 to 4096 particles")
+        number.filter(|n| (2..=taut::Grid::MAX_SIDE).contains(n)).ok_or("each side needs 2 to 4096 particles")
     };
-    Ok(GridSize {
-        rows: side(rows)?,
-        columns: side(columns)?,
-    })
+    Ok(GridSize { rows: side(rows)?, columns: side(columns)? })
 }
 
 /// `WIDTHxHEIGHT` in m.
 pub fn sides(text: &str) -> Result<Sides, String> {
     let (width, height) = pair(text, "1x1.5")?;
     let side = |s| within(s, 0.001..=10_000.0, " m").map_err(|e| format!("each side {e}"));
-    Ok(Sides {
-        width_m: side(width)?,
-        height_m: side(height)?,
-    })
+    Ok(Sides { width_m: side(width)?, height_m: side(height)? })
 }
 
 /// Frames per second.
@@ -70,9 +57,7 @@ pub fn rate(text: &str) -> Result<f32, String> {
 /// Substeps of a frame.
 pub fn substeps(text: &str) -> Result<u32, String> {
     let number = text.trim().parse::<u32>().ok();
-    number
-        .filter(|n| (1..=1024).contains(n))
-        .ok_or("must be a whole number, 1 to 1024".into())
+    number.filter(|n| (1..=1024).contains(n)).ok_or("must be a whole number, 1 to 1024".into())
 }
 
 /// Simulated time in s: above 0, at most an hour.

@@ -106,10 +106,7 @@ impl Folder {
         let mut made = unfilled();
         let missing = |p: &&Path| !p.as_os_str().is_empty() && !p.exists();
         let new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        let folder = Folder {
-            path: path.into(),
-            files: files.into(),
-        };
+        let folder = Folder { path: path.into(), files: files.into() };
         let created = fs::create_dir_all(path);
         made.extend(new);
         drop(made);
@@ -128,8 +125,7 @@ impl Folder {
     pub fn fill(&self, contents: &[&[u8]]) -> Result<Vec<PathBuf>, Failure> {
         let mut made = unfilled();
         let paths: Vec<PathBuf> = self.files.iter().map(|f| self.path.join(f)).collect();
-        let files: Vec<(PathBuf, &[u8])> =
-            paths.iter().cloned().zip(contents.iter().copied()).collect();
+        let files: Vec<(PathBuf, &[u8])> = paths.iter().cloned().zip(contents.iter().copied()).collect();
         write_all(&files)?;
         made.clear();
         Ok(paths)

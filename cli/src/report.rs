@@ -22,12 +22,7 @@ pub struct Stiffness {
 
 impl From<[f32; 4]> for Stiffness {
     fn from([warp, weft, shear, bend]: [f32; 4]) -> Stiffness {
-        Stiffness {
-            warp,
-            weft,
-            shear,
-            bend,
-        }
+        Stiffness { warp, weft, shear, bend }
     }
 }
 
@@ -50,11 +45,7 @@ pub struct StretchLimits {
 
 impl From<[f32; 3]> for StretchLimits {
     fn from([warp, weft, diagonal]: [f32; 3]) -> StretchLimits {
-        StretchLimits {
-            warp,
-            weft,
-            diagonal,
-        }
+        StretchLimits { warp, weft, diagonal }
     }
 }
 
@@ -233,12 +224,7 @@ mod tests {
     fn setting(name: &'static str, max: f64, ex_pin_max: f64) -> Setting {
         Setting {
             name,
-            stretch_pct: StretchPct {
-                max,
-                p99: 0.0,
-                mean: 0.0,
-                ex_pin_max,
-            },
+            stretch_pct: StretchPct { max, p99: 0.0, mean: 0.0, ex_pin_max },
             cut_fraction: 0.0,
             ns_per_particle_step: 0.0,
             finite: true,

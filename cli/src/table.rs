@@ -34,13 +34,8 @@ mod tests {
 
     #[test]
     fn columns_are_aligned() {
-        let rows = vec![
-            vec!["uniform".into(), "15.1".into(), "yes".into()],
-            vec!["a".into(), "3.25".into(), "".into()],
-        ];
-        assert_eq!(
-            aligned(&["K", "max %", "ok"], &rows),
-            "K        max %   ok\nuniform   15.1  yes\na         3.25\n"
-        );
+        let rows =
+            vec![vec!["uniform".into(), "15.1".into(), "yes".into()], vec!["a".into(), "3.25".into(), "".into()]];
+        assert_eq!(aligned(&["K", "max %", "ok"], &rows), "K        max %   ok\nuniform   15.1  yes\na         3.25\n");
     }
 }

@@ -103,9 +103,7 @@ pub fn write(
         .chain(seeds)
         .chain(hash)
         .chain(field.iter().flat_map(|k| k.to_le_bytes()));
-    let (body, tail) = out
-        .split_at_mut_checked(size - 8)
-        .ok_or(Error::BlockTooSmall)?;
+    let (body, tail) = out.split_at_mut_checked(size - 8).ok_or(Error::BlockTooSmall)?;
     for (to, from) in body.iter_mut().zip(bytes) {
         *to = from;
     }
@@ -116,9 +114,7 @@ pub fn write(
 }
 
 fn check_fabric(f: &Fabric) -> Result<(), Error> {
-    let all = [f.density_kg_m2, f.hinge_rigidity_n_m]
-        .into_iter()
-        .chain(f.stretch_limits);
+    let all = [f.density_kg_m2, f.hinge_rigidity_n_m].into_iter().chain(f.stretch_limits);
     for x in all {
         if !x.is_finite() {
             return Err(Error::NotFinite);
@@ -172,14 +168,7 @@ impl<'a> Baked<'a> {
                 return Err(Error::Negative);
             }
         }
-        Ok(Baked {
-            rows,
-            columns,
-            fabric,
-            seed: u64_at(header, 48),
-            description_hash: u64_at(header, 56),
-            numbers,
-        })
+        Ok(Baked { rows, columns, fabric, seed: u64_at(header, 48), description_hash: u64_at(header, 56), numbers })
     }
 
     /// Stiffness in N/m of a channel at a place; 0 outside.
@@ -187,9 +176,7 @@ impl<'a> Baked<'a> {
         if channel >= 4 || row >= self.rows || column >= self.columns {
             return 0.0;
         }
-        self.numbers
-            .get((channel * self.rows + row) * self.columns + column)
-            .map_or(0.0, |b| f32::from_le_bytes(*b))
+        self.numbers.get((channel * self.rows + row) * self.columns + column).map_or(0.0, |b| f32::from_le_bytes(*b))
     }
 }
 
@@ -200,9 +187,7 @@ impl Cloth<'_> {
     /// Errors: those of [`Baked::parse`].
     pub fn load_stiffness(&mut self, bytes: &[u8]) -> Result<Fabric, Error> {
         let baked = Baked::parse(bytes)?;
-        self.set_stiffness_by(baked.rows, baked.columns, |c, row, column| {
-            baked.stiffness(c, row, column)
-        });
+        self.set_stiffness_by(baked.rows, baked.columns, |c, row, column| baked.stiffness(c, row, column));
         Ok(baked.fabric)
     }
 }
@@ -214,11 +199,7 @@ mod tests {
     fn file() -> ([u8; 64 + 16 * 6 + 8], [f32; 24]) {
         let field: [f32; 24] = core::array::from_fn(|i| i as f32 + 0.25);
         let mut out = [0u8; 64 + 16 * 6 + 8];
-        let fabric = Fabric {
-            density_kg_m2: 0.3,
-            hinge_rigidity_n_m: 1e-5,
-            stretch_limits: [0.01, 0.02, 0.03],
-        };
+        let fabric = Fabric { density_kg_m2: 0.3, hinge_rigidity_n_m: 1e-5, stretch_limits: [0.01, 0.02, 0.03] };
         let n = write(2, 3, &field, &fabric, 9, "heavy blue denim", &mut out).unwrap();
         assert_eq!(n, out.len());
         (out, field)
@@ -239,11 +220,7 @@ mod tests {
     fn every_damage_is_named() {
         let (bytes, _) = file();
         for n in 0..bytes.len() {
-            assert_eq!(
-                Baked::parse(&bytes[..n]).unwrap_err(),
-                Error::Truncated,
-                "{n}"
-            );
+            assert_eq!(Baked::parse(&bytes[..n]).unwrap_err(), Error::Truncated, "{n}");
         }
         for i in 0..bytes.len() {
             let mut b = bytes;
@@ -253,10 +230,7 @@ mod tests {
         let mut b = bytes;
         b[70] ^= 1;
         assert_eq!(Baked::parse(&b).unwrap_err(), Error::Checksum);
-        assert_eq!(
-            Baked::parse(b"\x08\x08\x12\x04taut and more").unwrap_err(),
-            Error::WrongKind
-        );
+        assert_eq!(Baked::parse(b"\x08\x08\x12\x04taut and more").unwrap_err(), Error::WrongKind);
     }
 
     #[test]
@@ -264,30 +238,12 @@ mod tests {
         let mut out = [0u8; 256];
         let f = Fabric::default();
         let mut field = [1.0f32; 24];
-        assert_eq!(
-            write(1, 3, &field, &f, 0, "", &mut out).unwrap_err(),
-            Error::GridSize
-        );
-        assert_eq!(
-            write(3, 3, &field, &f, 0, "", &mut out).unwrap_err(),
-            Error::Shape
-        );
-        assert_eq!(
-            write(2, 3, &field, &f, 0, "", &mut out[..100]).unwrap_err(),
-            Error::BlockTooSmall
-        );
+        assert_eq!(write(1, 3, &field, &f, 0, "", &mut out).unwrap_err(), Error::GridSize);
+        assert_eq!(write(3, 3, &field, &f, 0, "", &mut out).unwrap_err(), Error::Shape);
+        assert_eq!(write(2, 3, &field, &f, 0, "", &mut out[..100]).unwrap_err(), Error::BlockTooSmall);
         field[3] = f32::NAN;
-        assert_eq!(
-            write(2, 3, &field, &f, 0, "", &mut out).unwrap_err(),
-            Error::NotFinite
-        );
-        let f = Fabric {
-            density_kg_m2: -1.0,
-            ..f
-        };
-        assert_eq!(
-            write(2, 3, &[1.0; 24], &f, 0, "", &mut out).unwrap_err(),
-            Error::Negative
-        );
+        assert_eq!(write(2, 3, &field, &f, 0, "", &mut out).unwrap_err(), Error::NotFinite);
+        let f = Fabric { density_kg_m2: -1.0, ..f };
+        assert_eq!(write(2, 3, &[1.0; 24], &f, 0, "", &mut out).unwrap_err(), Error::Negative);
     }
 }

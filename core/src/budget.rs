@@ -85,24 +85,12 @@ pub(crate) fn project(
     // omega^2 dt^2 + 2 c dt share = 4 share, solved for dt without cancellation
     let w = f64::from(worst) / f64::from(share);
     let c = f64::from(def.damping_per_s);
-    let max_dt = if w > 0.0 {
-        (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32
-    } else {
-        f32::INFINITY
-    };
+    let max_dt = if w > 0.0 { (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32 } else { f32::INFINITY };
     BudgetReport {
         dt_s: dt,
         max_dt_s: max_dt,
-        cut_fraction: if before > 0.0 {
-            (1.0 - after / before) as f32
-        } else {
-            0.0
-        },
-        inertia_added: if free > 0 {
-            (inertia / (f64::from(free) * mass) - 1.0) as f32
-        } else {
-            0.0
-        },
+        cut_fraction: if before > 0.0 { (1.0 - after / before) as f32 } else { 0.0 },
+        inertia_added: if free > 0 { (inertia / (f64::from(free) * mass) - 1.0) as f32 } else { 0.0 },
     }
 }
 
@@ -114,16 +102,11 @@ pub(crate) fn particle_mass(grid: &Grid, def: &ClothDef) -> f32 {
 
 /// The four channels of a particle with the bend cut to its share and everything to [`MAX_STIFFNESS`].
 fn channels(target: &[&mut [f32]; 4], at: usize) -> [f32; 4] {
-    let [warp, weft, shear, bend] =
-        [0, 1, 2, 3].map(|c| target.get(c).map_or(0.0, |p| read(p, at)));
+    let [warp, weft, shear, bend] = [0, 1, 2, 3].map(|c| target.get(c).map_or(0.0, |p| read(p, at)));
     // halved before the sum, which could overflow
     let bend = min(bend, BEND_SHARE * (0.5 * warp + 0.5 * weft));
     let top = max(max(warp, weft), shear);
-    let s = if top > MAX_STIFFNESS {
-        MAX_STIFFNESS / top
-    } else {
-        1.0
-    };
+    let s = if top > MAX_STIFFNESS { MAX_STIFFNESS / top } else { 1.0 };
     [warp * s, weft * s, shear * s, bend * s]
 }
 
@@ -187,14 +170,7 @@ fn each_spring(l: &Layout, mut visit: impl FnMut(usize, usize, usize)) {
 }
 
 /// lambda_max(B_i), or its bound for every shape of the cloth.
-fn bound(
-    grid: &Grid,
-    budget: Budget,
-    l: &Layout,
-    at: usize,
-    inverse: &[f32],
-    k: &Springs<'_>,
-) -> f32 {
+fn bound(grid: &Grid, budget: Budget, l: &Layout, at: usize, inverse: &[f32], k: &Springs<'_>) -> f32 {
     let s = l.stride;
     let weighted = |plane: &[f32], place: usize, other: usize| {
         read(plane, place) * if read(inverse, other) > 0.0 { 2.0 } else { 1.0 }

@@ -62,9 +62,7 @@ impl<'a> Cloth<'a> {
     pub fn create(grid: &Grid, def: &ClothDef, block: &'a mut [f32]) -> Result<Cloth<'a>, Error> {
         def.check()?;
         let layout = Layout::new(grid, def);
-        let mut rest = block
-            .get_mut(..layout.numbers())
-            .ok_or(Error::BlockTooSmall)?;
+        let mut rest = block.get_mut(..layout.numbers()).ok_or(Error::BlockTooSmall)?;
         rest.fill(0.0);
         let p = layout.plane;
         let when = |on: bool| if on { p } else { 0 };
@@ -74,24 +72,11 @@ impl<'a> Cloth<'a> {
             def: *def,
             layout,
             mass: budget::particle_mass(grid, def),
-            x: Planes {
-                x: take(b, p)?,
-                y: take(b, p)?,
-                z: take(b, p)?,
-            },
-            v: Planes {
-                x: take(b, p)?,
-                y: take(b, p)?,
-                z: take(b, p)?,
-            },
+            x: Planes { x: take(b, p)?, y: take(b, p)?, z: take(b, p)? },
+            v: Planes { x: take(b, p)?, y: take(b, p)?, z: take(b, p)? },
             good: take(b, 6 * p)?,
             inverse: take(b, p)?,
-            target: [
-                take(b, p)?,
-                take(b, p)?,
-                take(b, when(layout.shear))?,
-                take(b, when(layout.bend))?,
-            ],
+            target: [take(b, p)?, take(b, p)?, take(b, when(layout.shear))?, take(b, when(layout.bend))?],
             springs: Springs {
                 u: take(b, p)?,
                 v: take(b, p)?,
@@ -100,11 +85,7 @@ impl<'a> Cloth<'a> {
                 bend_u: take(b, when(layout.bend))?,
                 bend_v: take(b, when(layout.bend))?,
             },
-            pull: [
-                take(b, when(layout.pull))?,
-                take(b, when(layout.pull))?,
-                take(b, when(layout.pull))?,
-            ],
+            pull: [take(b, when(layout.pull))?, take(b, when(layout.pull))?, take(b, when(layout.pull))?],
             pins: Pins {
                 numbers: take(b, round16(PIN_NUMBERS * layout.max_pins))?,
                 count: 0,
@@ -183,16 +164,10 @@ impl<'a> Cloth<'a> {
     }
 
     /// The same from a function (channel, row, column) on another grid of rows x columns.
-    pub(crate) fn set_stiffness_by(
-        &mut self,
-        rows: usize,
-        columns: usize,
-        k: impl Fn(usize, usize, usize) -> f32,
-    ) {
+    pub(crate) fn set_stiffness_by(&mut self, rows: usize, columns: usize, k: impl Fn(usize, usize, usize) -> f32) {
         let to = (self.layout.rows, self.layout.columns);
         self.set_target(|row, column| {
-            [0, 1, 2, 3]
-                .map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
+            [0, 1, 2, 3].map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
         });
     }
 
@@ -232,15 +207,7 @@ impl<'a> Cloth<'a> {
         copy(former, self.inverse);
         let (pins, layout) = (&self.pins, &self.layout);
         let pinned = pins.iter().filter_map(|p| layout.place(p.particle).ok());
-        inertia::inverse_masses(
-            &self.grid,
-            &self.def,
-            &l,
-            self.mass,
-            pinned,
-            self.inverse,
-            scratch,
-        );
+        inertia::inverse_masses(&self.grid, &self.def, &l, self.mass, pinned, self.inverse, scratch);
         if keep_momentum {
             for row in 0..l.rows {
                 for column in 0..l.columns {
@@ -255,15 +222,8 @@ impl<'a> Cloth<'a> {
                 }
             }
         }
-        self.report = budget::project(
-            &self.grid,
-            &self.def,
-            &l,
-            &self.target,
-            self.inverse,
-            &mut self.springs,
-            scratch,
-        );
+        self.report =
+            budget::project(&self.grid, &self.def, &l, &self.target, self.inverse, &mut self.springs, scratch);
         self.stale = false;
     }
 
@@ -303,14 +263,7 @@ impl<'a> Cloth<'a> {
         self.set_position_at(at, p);
         self.set_velocity_at(at, [0.0; 3]);
         if let Ok(place) = self.pins.find(particle) {
-            self.pins.set(
-                place,
-                crate::pins::Pin {
-                    particle,
-                    from: p,
-                    to: p,
-                },
-            );
+            self.pins.set(place, crate::pins::Pin { particle, from: p, to: p });
         }
         Ok(())
     }

@@ -110,10 +110,7 @@ impl ClothDef {
             self.inertia_max,
         ];
         let vectors = [self.gravity_m_s2, self.u_axis, self.v_axis];
-        if !scalars
-            .iter()
-            .chain(vectors.as_flattened())
-            .all(|x| x.is_finite())
+        if !scalars.iter().chain(vectors.as_flattened()).all(|x| x.is_finite())
             || !self.origin_m.iter().all(|x| x.is_finite())
         {
             return Err(Error::NotFinite);
@@ -147,20 +144,9 @@ impl ClothDef {
     /// Digest of what a snapshot depends on.
     pub(crate) fn digest(&self, h: &mut Hash64) {
         let f = |x: f32| x.to_bits();
-        h.words(&[
-            f(self.rate_hz),
-            self.substeps,
-            f(self.density_kg_m2),
-            f(self.damping_per_s),
-            f(self.speed_limit),
-        ]);
+        h.words(&[f(self.rate_hz), self.substeps, f(self.density_kg_m2), f(self.damping_per_s), f(self.speed_limit)]);
         h.words(&self.gravity_m_s2.map(f));
-        h.words(&[
-            self.compression_limit as u32,
-            self.budget as u32,
-            f(self.inertia_radius_m),
-            f(self.inertia_max),
-        ]);
+        h.words(&[self.compression_limit as u32, self.budget as u32, f(self.inertia_radius_m), f(self.inertia_max)]);
         h.words(&[self.features.0, self.max_pins]);
     }
 }
@@ -180,68 +166,14 @@ mod tests {
         let err = |d: ClothDef| d.check().unwrap_err();
         assert_eq!(err(ClothDef { rate_hz: 0.0, ..d }), Error::StepSize);
         assert_eq!(err(ClothDef { substeps: 0, ..d }), Error::StepSize);
-        assert_eq!(
-            err(ClothDef {
-                rate_hz: f32::NAN,
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                rate_hz: f32::INFINITY,
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                density_kg_m2: 0.0,
-                ..d
-            }),
-            Error::OutOfRange
-        );
-        assert_eq!(
-            err(ClothDef {
-                damping_per_s: -1.0,
-                ..d
-            }),
-            Error::Negative
-        );
-        assert_eq!(
-            err(ClothDef {
-                damping_per_s: 960.0,
-                ..d
-            }),
-            Error::Damping
-        );
-        assert_eq!(
-            err(ClothDef {
-                gravity_m_s2: [0.0, f32::NAN, 0.0],
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                u_axis: [0.0; 3],
-                ..d
-            }),
-            Error::OutOfRange
-        );
-        assert_eq!(
-            err(ClothDef {
-                origin_m: [f64::NAN, 0.0, 0.0],
-                ..d
-            }),
-            Error::NotFinite
-        );
-        assert_eq!(
-            err(ClothDef {
-                features: Features(2),
-                ..d
-            }),
-            Error::OutOfRange
-        );
+        assert_eq!(err(ClothDef { rate_hz: f32::NAN, ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { rate_hz: f32::INFINITY, ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { density_kg_m2: 0.0, ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { damping_per_s: -1.0, ..d }), Error::Negative);
+        assert_eq!(err(ClothDef { damping_per_s: 960.0, ..d }), Error::Damping);
+        assert_eq!(err(ClothDef { gravity_m_s2: [0.0, f32::NAN, 0.0], ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { u_axis: [0.0; 3], ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { origin_m: [f64::NAN, 0.0, 0.0], ..d }), Error::NotFinite);
+        assert_eq!(err(ClothDef { features: Features(2), ..d }), Error::OutOfRange);
     }
 }

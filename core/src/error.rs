@@ -94,9 +94,7 @@ impl Error {
             Error::NullPointer => "a pointer is NULL",
             Error::Misaligned => "the memory block is not aligned as asked for",
             Error::BlockTooSmall => "the memory block is smaller than asked for",
-            Error::BadDefinition => {
-                "the definition was not made by its default function or is of another version"
-            }
+            Error::BadDefinition => "the definition was not made by its default function or is of another version",
             Error::GridSize => "each grid side needs 2 to 4096 particles",
             Error::SideLength => "a side length must be 0.000001 to 10000 m",
             Error::StepSize => "the rate must be 1 to 10000 Hz and the substeps 1 to 1024",

@@ -24,12 +24,7 @@ impl<'a> FieldView<'a> {
     /// Checks the shape (4 channels, or 1 with [`SINGLE_RATIOS`]) and every number.
     ///
     /// Errors: [`Error::GridSize`], [`Error::Shape`], [`Error::NotFinite`], [`Error::Negative`].
-    pub fn new(
-        channels: usize,
-        rows: usize,
-        columns: usize,
-        data: &'a [f32],
-    ) -> Result<Self, Error> {
+    pub fn new(channels: usize, rows: usize, columns: usize, data: &'a [f32]) -> Result<Self, Error> {
         let side = |n: usize| (2..=crate::Grid::MAX_SIDE as usize).contains(&n);
         if !side(rows) || !side(columns) {
             return Err(Error::GridSize);
@@ -43,36 +38,17 @@ impl<'a> FieldView<'a> {
         if data.iter().any(|k| *k < 0.0) {
             return Err(Error::Negative);
         }
-        Ok(FieldView {
-            channels,
-            rows,
-            columns,
-            data,
-        })
+        Ok(FieldView { channels, rows, columns, data })
     }
 
     /// The four channels at particle (row, column) of an m x n grid, bilinear between the field's own particles with the
     /// corners aligned.
     pub fn sample(&self, row: usize, column: usize, m: usize, n: usize) -> [f32; 4] {
         let value = |c: usize, row: usize, column: usize| {
-            self.data
-                .get((c * self.rows + row) * self.columns + column)
-                .copied()
-                .unwrap_or(0.0)
+            self.data.get((c * self.rows + row) * self.columns + column).copied().unwrap_or(0.0)
         };
-        let at = |c: usize| {
-            bilinear(
-                (self.rows, self.columns),
-                |r, k| value(c, r, k),
-                (row, column),
-                (m, n),
-            )
-        };
-        if self.channels == 1 {
-            SINGLE_RATIOS.map(|r| r * at(0))
-        } else {
-            [at(0), at(1), at(2), at(3)]
-        }
+        let at = |c: usize| bilinear((self.rows, self.columns), |r, k| value(c, r, k), (row, column), (m, n));
+        if self.channels == 1 { SINGLE_RATIOS.map(|r| r * at(0)) } else { [at(0), at(1), at(2), at(3)] }
     }
 }
 
@@ -117,10 +93,7 @@ mod tests {
         assert_eq!(f.sample(3, 1, 5, 3), [9.0, 109.0, 209.0, 309.0]);
         let s = f.sample(8, 8, 17, 17);
         for (c, v) in s.iter().enumerate() {
-            assert!(
-                (v - (100.0 * c as f32 + 2.0 * 2.0 + 3.0)).abs() < 1e-4,
-                "{v}"
-            );
+            assert!((v - (100.0 * c as f32 + 2.0 * 2.0 + 3.0)).abs() < 1e-4, "{v}");
         }
     }
 

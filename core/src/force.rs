@@ -55,11 +55,7 @@ pub(crate) struct View<'a> {
 
 impl Planes<'_> {
     pub fn view(&self) -> View<'_> {
-        View {
-            x: self.x,
-            y: self.y,
-            z: self.z,
-        }
+        View { x: self.x, y: self.y, z: self.z }
     }
 }
 
@@ -102,47 +98,20 @@ pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool
     }
     macro_rules! row_if {
         ($on:expr, $plane:expr, $at:expr) => {
-            if $on {
-                row!($plane, $at)
-            } else {
-                row!(inverse, at)
-            }
+            if $on { row!($plane, $at) } else { row!(inverse, at) }
         };
     }
     let here = row3!(at);
     let (r1, l1, d1, u1) = (row3!(at + 1), row3!(at - 1), row3!(at + s), row3!(at - s));
-    let (dr, dl, ur, ul) = (
-        row3!(at + s + 1),
-        row3!(at + s - 1),
-        row3!(at - s + 1),
-        row3!(at - s - 1),
-    );
-    let (r2, l2, d2, u2) = (
-        row3!(at + 2),
-        row3!(at - 2),
-        row3!(at + 2 * s),
-        row3!(at - 2 * s),
-    );
+    let (dr, dl, ur, ul) = (row3!(at + s + 1), row3!(at + s - 1), row3!(at - s + 1), row3!(at - s - 1));
+    let (r2, l2, d2, u2) = (row3!(at + 2), row3!(at - 2), row3!(at + 2 * s), row3!(at - 2 * s));
     let (k_r1, k_l1) = (row!(k.u, at), row!(k.u, at - 1));
     let (k_d1, k_u1) = (row!(k.v, at), row!(k.v, at - s));
-    let (k_dr, k_ul) = (
-        row_if!(SHEAR, k.right, at),
-        row_if!(SHEAR, k.right, at - s - 1),
-    );
-    let (k_dl, k_ur) = (
-        row_if!(SHEAR, k.left, at),
-        row_if!(SHEAR, k.left, at - s + 1),
-    );
+    let (k_dr, k_ul) = (row_if!(SHEAR, k.right, at), row_if!(SHEAR, k.right, at - s - 1));
+    let (k_dl, k_ur) = (row_if!(SHEAR, k.left, at), row_if!(SHEAR, k.left, at - s + 1));
     let (k_r2, k_l2) = (row_if!(BEND, k.bend_u, at), row_if!(BEND, k.bend_u, at - 2));
-    let (k_d2, k_u2) = (
-        row_if!(BEND, k.bend_v, at),
-        row_if!(BEND, k.bend_v, at - 2 * s),
-    );
-    let (px, py, pz) = (
-        row_if!(PULL, pull[0], at),
-        row_if!(PULL, pull[1], at),
-        row_if!(PULL, pull[2], at),
-    );
+    let (k_d2, k_u2) = (row_if!(BEND, k.bend_v, at), row_if!(BEND, k.bend_v, at - 2 * s));
+    let (px, py, pz) = (row_if!(PULL, pull[0], at), row_if!(PULL, pull[1], at), row_if!(PULL, pull[2], at));
     let w = row!(inverse, at);
     macro_rules! row_mut {
         ($plane:expr) => {
@@ -162,14 +131,9 @@ pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool
     let all = Lanes::all;
     let (rest_u, rest_v, rest_diagonal) = (all(c.rest_u), all(c.rest_v), all(c.rest_diagonal));
     let (bend_u, bend_v) = (all(2.0 * c.rest_u), all(2.0 * c.rest_v));
-    let (dt, damping, floor, tiny, one) =
-        (all(c.dt), all(c.damping), all(c.floor), all(TINY), all(1.0));
+    let (dt, damping, floor, tiny, one) = (all(c.dt), all(c.damping), all(c.floor), all(TINY), all(1.0));
     let weight = c.weight.map(all);
-    let (limited, speed, speed2) = (
-        c.speed < f32::INFINITY,
-        all(c.speed),
-        all(c.speed * c.speed),
-    );
+    let (limited, speed, speed2) = (c.speed < f32::INFINITY, all(c.speed), all(c.speed * c.speed));
     for i in 0..n / LANES {
         let load = |r: &[[f32; LANES]]| Lanes(r[i]);
         let (x, y, z) = (load(here.0), load(here.1), load(here.2));

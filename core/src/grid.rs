@@ -37,13 +37,7 @@ pub struct GridDef {
 
 impl Default for GridDef {
     fn default() -> Self {
-        GridDef {
-            rows: 32,
-            columns: 32,
-            width_m: 1.0,
-            height_m: 1.0,
-            families: Families::ALL,
-        }
+        GridDef { rows: 32, columns: 32, width_m: 1.0, height_m: 1.0, families: Families::ALL }
     }
 }
 
@@ -99,16 +93,8 @@ impl Grid {
     pub fn springs(&self) -> usize {
         let (m, n) = (self.rows(), self.columns());
         let structural = m * (n - 1) + (m - 1) * n;
-        let shear = if self.has_shear() {
-            2 * (m - 1) * (n - 1)
-        } else {
-            0
-        };
-        let bend = if self.has_bend() {
-            m * (n - 2) + (m - 2) * n
-        } else {
-            0
-        };
+        let shear = if self.has_shear() { 2 * (m - 1) * (n - 1) } else { 0 };
+        let bend = if self.has_bend() { m * (n - 2) + (m - 2) * n } else { 0 };
         structural + shear + bend
     }
 
@@ -142,13 +128,7 @@ impl Grid {
     pub fn digest(&self) -> u64 {
         let d = &self.def;
         let mut h = Hash64::new();
-        h.words(&[
-            d.rows,
-            d.columns,
-            d.width_m.to_bits(),
-            d.height_m.to_bits(),
-            d.families.0,
-        ]);
+        h.words(&[d.rows, d.columns, d.width_m.to_bits(), d.height_m.to_bits(), d.families.0]);
         h.finish()
     }
 }
@@ -161,69 +141,21 @@ mod tests {
     fn refuses_bad_definitions() {
         let d = GridDef::default();
         let err = |d: GridDef| Grid::new(&d).unwrap_err();
-        assert_eq!(
-            err(GridDef {
-                rows: 1,
-                columns: 1,
-                ..d
-            }),
-            Error::GridSize
-        );
-        assert_eq!(
-            err(GridDef {
-                rows: 70_000,
-                columns: 2,
-                ..d
-            }),
-            Error::GridSize
-        );
+        assert_eq!(err(GridDef { rows: 1, columns: 1, ..d }), Error::GridSize);
+        assert_eq!(err(GridDef { rows: 70_000, columns: 2, ..d }), Error::GridSize);
         assert_eq!(err(GridDef { width_m: 0.0, ..d }), Error::SideLength);
-        assert_eq!(
-            err(GridDef {
-                height_m: f32::NAN,
-                ..d
-            }),
-            Error::SideLength
-        );
-        assert_eq!(
-            err(GridDef {
-                height_m: f32::INFINITY,
-                ..d
-            }),
-            Error::SideLength
-        );
-        assert_eq!(
-            err(GridDef {
-                families: Families(2),
-                ..d
-            }),
-            Error::OutOfRange
-        );
-        assert_eq!(
-            err(GridDef {
-                families: Families(8),
-                ..d
-            }),
-            Error::OutOfRange
-        );
+        assert_eq!(err(GridDef { height_m: f32::NAN, ..d }), Error::SideLength);
+        assert_eq!(err(GridDef { height_m: f32::INFINITY, ..d }), Error::SideLength);
+        assert_eq!(err(GridDef { families: Families(2), ..d }), Error::OutOfRange);
+        assert_eq!(err(GridDef { families: Families(8), ..d }), Error::OutOfRange);
     }
 
     #[test]
     fn counts_springs() {
-        let g = Grid::new(&GridDef {
-            rows: 3,
-            columns: 4,
-            ..GridDef::default()
-        })
-        .unwrap();
+        let g = Grid::new(&GridDef { rows: 3, columns: 4, ..GridDef::default() }).unwrap();
         // structural 3*3 + 2*4, shear 2*2*3, bend 3*2 + 1*4
         assert_eq!(g.springs(), 17 + 12 + 10);
-        let g = Grid::new(&GridDef {
-            rows: 2,
-            columns: 2,
-            ..GridDef::default()
-        })
-        .unwrap();
+        let g = Grid::new(&GridDef { rows: 2, columns: 2, ..GridDef::default() }).unwrap();
         assert_eq!(g.springs(), 4 + 2);
     }
 }

@@ -37,21 +37,13 @@ pub(crate) fn inverse_masses(
         let mut d = f32::INFINITY;
         for row in 0..l.rows {
             let at = l.at(row, column);
-            d = if read(inverse, at) == 0.0 {
-                0.0
-            } else {
-                d + grid.rest_v()
-            };
+            d = if read(inverse, at) == 0.0 { 0.0 } else { d + grid.rest_v() };
             write(distance, at, d);
         }
         let mut d = f32::INFINITY;
         for row in (0..l.rows).rev() {
             let at = l.at(row, column);
-            d = if read(inverse, at) == 0.0 {
-                0.0
-            } else {
-                d + grid.rest_v()
-            };
+            d = if read(inverse, at) == 0.0 { 0.0 } else { d + grid.rest_v() };
             write(distance, at, min(d, read(distance, at)));
         }
     }
@@ -79,10 +71,7 @@ pub(crate) fn inverse_masses(
                     best = min(du2 + d * d, best);
                 }
             }
-            let q = min(
-                max(def.inertia_radius_m / sqrt(max(best, 1e-12)), 1.0),
-                def.inertia_max,
-            );
+            let q = min(max(def.inertia_radius_m / sqrt(max(best, 1e-12)), 1.0), def.inertia_max);
             write(inverse, at, light / q);
         }
     }

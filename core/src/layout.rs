@@ -80,9 +80,7 @@ impl Layout {
 
 /// Takes the first `n` numbers off a block.
 pub(crate) fn take<'a>(block: &mut &'a mut [f32], n: usize) -> Result<&'a mut [f32], Error> {
-    let (head, tail) = core::mem::take(block)
-        .split_at_mut_checked(n)
-        .ok_or(Error::BlockTooSmall)?;
+    let (head, tail) = core::mem::take(block).split_at_mut_checked(n).ok_or(Error::BlockTooSmall)?;
     *block = tail;
     Ok(head)
 }

@@ -27,12 +27,7 @@ pub(crate) fn sqrt4(x: [f32; 4]) -> [f32; 4] {
     {
         use core::arch::x86_64::{__m128, _mm_sqrt_ps};
         // SAFETY: SSE as above; both types are four f32 with no invalid bit patterns.
-        unsafe {
-            core::mem::transmute::<__m128, [f32; 4]>(_mm_sqrt_ps(core::mem::transmute::<
-                [f32; 4],
-                __m128,
-            >(x)))
-        }
+        unsafe { core::mem::transmute::<__m128, [f32; 4]>(_mm_sqrt_ps(core::mem::transmute::<[f32; 4], __m128>(x))) }
     }
     #[cfg(not(target_arch = "x86_64"))]
     {

@@ -22,8 +22,7 @@ pub fn gaussian(seed: u64, index: u32) -> f32 {
     let b = bits(seed, index);
     // 2^-48 to 1, so that the logarithm is finite
     let u = ((b >> 16) + 1) as f64 * (1.0 / 281_474_976_710_656.0);
-    let angle = (bits(seed ^ 0x5851_f42d_4c95_7f2d, index) >> 40) as f64
-        * (core::f64::consts::TAU / 16_777_216.0);
+    let angle = (bits(seed ^ 0x5851_f42d_4c95_7f2d, index) >> 40) as f64 * (core::f64::consts::TAU / 16_777_216.0);
     (libm::sqrt(-2.0 * libm::log(u)) * libm::cos(angle)) as f32
 }
 

@@ -21,23 +21,11 @@ pub(crate) struct Pin {
 impl Pins<'_> {
     pub fn get(&self, i: usize) -> Pin {
         let n = |j: usize| read(self.numbers, i * PIN_NUMBERS + j);
-        Pin {
-            particle: n(0) as usize,
-            from: [n(1), n(2), n(3)],
-            to: [n(4), n(5), n(6)],
-        }
+        Pin { particle: n(0) as usize, from: [n(1), n(2), n(3)], to: [n(4), n(5), n(6)] }
     }
 
     pub fn set(&mut self, i: usize, pin: Pin) {
-        let values = [
-            pin.particle as f32,
-            pin.from[0],
-            pin.from[1],
-            pin.from[2],
-            pin.to[0],
-            pin.to[1],
-            pin.to[2],
-        ];
+        let values = [pin.particle as f32, pin.from[0], pin.from[1], pin.from[2], pin.to[0], pin.to[1], pin.to[2]];
         for (j, v) in values.into_iter().enumerate() {
             write(self.numbers, i * PIN_NUMBERS + j, v);
         }
@@ -84,14 +72,7 @@ impl Cloth<'_> {
             let previous = self.pins.get(i - 1);
             self.pins.set(i, previous);
         }
-        self.pins.set(
-            place,
-            Pin {
-                particle,
-                from: here,
-                to: here,
-            },
-        );
+        self.pins.set(place, Pin { particle, from: here, to: here });
         self.set_velocity_at(at, [0.0; 3]);
         self.stale = true;
         Ok(())
@@ -166,13 +147,7 @@ impl Cloth<'_> {
     pub(crate) fn finish_pins(&mut self) {
         for i in 0..self.pins.count {
             let pin = self.pins.get(i);
-            self.pins.set(
-                i,
-                Pin {
-                    from: pin.to,
-                    ..pin
-                },
-            );
+            self.pins.set(i, Pin { from: pin.to, ..pin });
         }
     }
 }

@@ -51,32 +51,17 @@ impl Cloth<'_> {
     pub fn state_hash(&mut self) -> u64 {
         self.refresh(true);
         let mut h = Hash64::new();
-        h.words(&[
-            self.step_index as u32,
-            (self.step_index >> 32) as u32,
-            self.pins.count as u32,
-        ]);
+        h.words(&[self.step_index as u32, (self.step_index >> 32) as u32, self.pins.count as u32]);
         self.each_row(|row| h.floats(row));
-        h.floats(
-            self.pins
-                .numbers
-                .get(..PIN_NUMBERS * self.pins.count)
-                .unwrap_or(&[]),
-        );
+        h.floats(self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         h.finish()
     }
 
     /// The rows of the planes that are state, in the order of the snapshot.
     fn each_row(&self, mut visit: impl FnMut(&[f32])) {
         let l = self.layout;
-        let state = [
-            &*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z,
-        ];
-        let pull = if self.has_pull {
-            self.pull.as_slice()
-        } else {
-            &[]
-        };
+        let state = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
+        let pull = if self.has_pull { self.pull.as_slice() } else { &[] };
         for plane in state.into_iter().chain(pull.iter().map(|p| &**p)) {
             for row in 0..l.rows {
                 visit(crate::layout::span(plane, l.row(row), l.columns));
@@ -91,9 +76,7 @@ impl Cloth<'_> {
         self.refresh(true);
         let size = self.snapshot_size();
         let out = out.get_mut(..size).ok_or(Error::BlockTooSmall)?;
-        let (body, mut tail) = out
-            .split_at_mut_checked(size - 8)
-            .ok_or(Error::BlockTooSmall)?;
+        let (body, mut tail) = out.split_at_mut_checked(size - 8).ok_or(Error::BlockTooSmall)?;
         let mut rest = &mut *body;
         put(&mut rest, MAGIC);
         put(&mut rest, &VERSION.to_le_bytes());
@@ -103,13 +86,7 @@ impl Cloth<'_> {
         put(&mut rest, &(self.pins.count as u32).to_le_bytes());
         put(&mut rest, &u32::from(self.has_pull).to_le_bytes());
         self.each_row(|row| put_floats(&mut rest, row));
-        put_floats(
-            &mut rest,
-            self.pins
-                .numbers
-                .get(..PIN_NUMBERS * self.pins.count)
-                .unwrap_or(&[]),
-        );
+        put_floats(&mut rest, self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         let mut h = Hash64::new();
         h.bytes(body);
         put(&mut tail, &h.finish().to_le_bytes());
@@ -151,24 +128,10 @@ impl Cloth<'_> {
         self.check_numbers(&number, numbers.len(), pins)?;
 
         let (l, n) = (self.layout, self.grid.particles());
-        let planes = [
-            &mut *self.x.x,
-            &mut *self.x.y,
-            &mut *self.x.z,
-            &mut *self.v.x,
-            &mut *self.v.y,
-            &mut *self.v.z,
-        ];
-        let pull_planes = if pull == 1 {
-            self.pull.as_mut_slice()
-        } else {
-            &mut []
-        };
+        let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
+        let pull_planes = if pull == 1 { self.pull.as_mut_slice() } else { &mut [] };
         let mut next = 0;
-        for plane in planes
-            .into_iter()
-            .chain(pull_planes.iter_mut().map(|p| &mut **p))
-        {
+        for plane in planes.into_iter().chain(pull_planes.iter_mut().map(|p| &mut **p)) {
             for row in 0..l.rows {
                 let at = l.row(row);
                 let row = plane.get_mut(at..at + l.columns).unwrap_or(&mut []);
@@ -180,16 +143,8 @@ impl Cloth<'_> {
         }
         let first = numbers.len() - PIN_NUMBERS * pins;
         let same = pins == self.pins.count
-            && (0..pins).all(|i| {
-                read(self.pins.numbers, i * PIN_NUMBERS) == number(first + i * PIN_NUMBERS)
-            });
-        for (i, to) in self
-            .pins
-            .numbers
-            .iter_mut()
-            .enumerate()
-            .take(PIN_NUMBERS * pins)
-        {
+            && (0..pins).all(|i| read(self.pins.numbers, i * PIN_NUMBERS) == number(first + i * PIN_NUMBERS));
+        for (i, to) in self.pins.numbers.iter_mut().enumerate().take(PIN_NUMBERS * pins) {
             *to = number(first + i);
         }
         self.pins.count = pins;
@@ -211,12 +166,7 @@ impl Cloth<'_> {
     }
 
     /// A snapshot holds finite numbers and ascending pins of existing particles.
-    fn check_numbers(
-        &self,
-        number: &impl Fn(usize) -> f32,
-        count: usize,
-        pins: usize,
-    ) -> Result<(), Error> {
+    fn check_numbers(&self, number: &impl Fn(usize) -> f32, count: usize, pins: usize) -> Result<(), Error> {
         let mut sum = 0.0f32;
         for i in 0..count {
             sum += number(i) * 0.0;
@@ -228,10 +178,7 @@ impl Cloth<'_> {
         let mut least = 0.0;
         for i in 0..pins {
             let particle = number(first + i * PIN_NUMBERS);
-            if particle < least
-                || particle >= self.grid.particles() as f32
-                || particle != libm::floorf(particle)
-            {
+            if particle < least || particle >= self.grid.particles() as f32 || particle != libm::floorf(particle) {
                 return Err(Error::NoSuchParticle);
             }
             least = particle + 1.0;
@@ -258,16 +205,10 @@ fn put_floats(rest: &mut &mut [u8], values: &[f32]) {
 
 /// A little-endian u32 at a place, 0 outside.
 pub(crate) fn u32_at(bytes: &[u8], at: usize) -> u32 {
-    bytes
-        .get(at..)
-        .and_then(|b| b.first_chunk::<4>())
-        .map_or(0, |b| u32::from_le_bytes(*b))
+    bytes.get(at..).and_then(|b| b.first_chunk::<4>()).map_or(0, |b| u32::from_le_bytes(*b))
 }
 
 /// A little-endian u64 at a place, 0 outside.
 pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    bytes
-        .get(at..)
-        .and_then(|b| b.first_chunk::<8>())
-        .map_or(0, |b| u64::from_le_bytes(*b))
+    bytes.get(at..).and_then(|b| b.first_chunk::<8>()).map_or(0, |b| u64::from_le_bytes(*b))
 }

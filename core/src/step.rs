@@ -42,13 +42,7 @@ impl Cloth<'_> {
             self.back_to_good();
             for i in 0..self.pins.count {
                 let pin = self.pins.get(i);
-                self.pins.set(
-                    i,
-                    crate::pins::Pin {
-                        to: pin.from,
-                        ..pin
-                    },
-                );
+                self.pins.set(i, crate::pins::Pin { to: pin.from, ..pin });
             }
         }
         if self.has_pull {
@@ -57,11 +51,7 @@ impl Cloth<'_> {
             }
             self.has_pull = false;
         }
-        Ok(if finite {
-            StepFlags(0)
-        } else {
-            StepFlags::NON_FINITE
-        })
+        Ok(if finite { StepFlags(0) } else { StepFlags::NON_FINITE })
     }
 
     pub(crate) fn constants(&self) -> Substep {
@@ -74,16 +64,8 @@ impl Cloth<'_> {
             rest_u: g.rest_u(),
             rest_v: g.rest_v(),
             rest_diagonal: g.rest_diagonal(),
-            floor: if d.compression_limit {
-                -1.0
-            } else {
-                f32::NEG_INFINITY
-            },
-            speed: if d.speed_limit > 0.0 {
-                d.speed_limit * min(g.rest_u(), g.rest_v()) / dt
-            } else {
-                f32::INFINITY
-            },
+            floor: if d.compression_limit { -1.0 } else { f32::NEG_INFINITY },
+            speed: if d.speed_limit > 0.0 { d.speed_limit * min(g.rest_u(), g.rest_v()) / dt } else { f32::INFINITY },
         }
     }
 
@@ -129,9 +111,7 @@ impl Cloth<'_> {
     }
 
     fn keep_good(&mut self) {
-        let planes = [
-            &*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z,
-        ];
+        let planes = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact_mut(size).zip(planes) {
             copy(good, plane);
@@ -139,14 +119,7 @@ impl Cloth<'_> {
     }
 
     fn back_to_good(&mut self) {
-        let planes = [
-            &mut *self.x.x,
-            &mut *self.x.y,
-            &mut *self.x.z,
-            &mut *self.v.x,
-            &mut *self.v.y,
-            &mut *self.v.z,
-        ];
+        let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact(size).zip(planes) {
             copy(plane, good);
@@ -158,9 +131,7 @@ impl Cloth<'_> {
         let l = self.layout;
         let mut lanes = [0.0f32; 16];
         for row in 0..l.rows {
-            for plane in [
-                &self.x.x, &self.x.y, &self.x.z, &self.v.x, &self.v.y, &self.v.z,
-            ] {
+            for plane in [&self.x.x, &self.x.y, &self.x.z, &self.v.x, &self.v.y, &self.v.z] {
                 for block in span(plane, l.row(row), l.width).as_chunks::<16>().0 {
                     for (lane, x) in lanes.iter_mut().zip(block) {
                         *lane += x * 0.0;

@@ -23,10 +23,7 @@ impl Cloth<'_> {
             largest = crate::math::max(strain, largest);
             count += 1;
         });
-        Strain {
-            largest,
-            mean: (sum / f64::from(count)) as f32,
-        }
+        Strain { largest, mean: (sum / f64::from(count)) as f32 }
     }
 
     /// Calls `visit(a, b, strain)` for every structural spring between the particles a and b: of each row first those
@@ -38,11 +35,7 @@ impl Cloth<'_> {
 
 fn each_structural(grid: &Grid, l: &Layout, p: View<'_>, mut visit: impl FnMut(usize, usize, f32)) {
     let strain = |a: usize, b: usize, rest: f32| {
-        let (dx, dy, dz) = (
-            read(p.x, b) - read(p.x, a),
-            read(p.y, b) - read(p.y, a),
-            read(p.z, b) - read(p.z, a),
-        );
+        let (dx, dy, dz) = (read(p.x, b) - read(p.x, a), read(p.y, b) - read(p.y, a), read(p.z, b) - read(p.z, a));
         sqrt(dx * dx + dy * dy + dz * dz) / rest - 1.0
     };
     let (rest_u, rest_v) = (grid.rest_u(), grid.rest_v());

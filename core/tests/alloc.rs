@@ -68,36 +68,22 @@ fn the_counter_counts() {
 #[test]
 fn nothing_is_allocated() {
     let grid = common::squares(20, 33, 0.05, Families::ALL);
-    let def = ClothDef {
-        features: Features::PULL,
-        inertia_radius_m: 0.3,
-        ..ClothDef::default()
-    };
+    let def = ClothDef { features: Features::PULL, inertia_radius_m: 0.3, ..ClothDef::default() };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
     let mut bytes = vec![0; 200_000];
     let field = [500.0; 4 * 7 * 5];
     let mut file = vec![0; baked::size(7, 5).unwrap()];
     let ((), n) = calls(|| {
         let mut c = Cloth::create(&grid, &def, &mut block).unwrap();
-        let written = baked::write(
-            7,
-            5,
-            &field,
-            &baked::Fabric::default(),
-            3,
-            "heavy blue denim",
-            &mut file,
-        );
+        let written = baked::write(7, 5, &field, &baked::Fabric::default(), 3, "heavy blue denim", &mut file);
         c.load_stiffness(&file[..written.unwrap()]).unwrap();
         c.set_stiffness_field(&FieldView::new(4, 7, 5, &field).unwrap());
-        c.set_stiffness_uniform([800.0, 700.0, 200.0, 10.0])
-            .unwrap();
+        c.set_stiffness_uniform([800.0, 700.0, 200.0, 10.0]).unwrap();
         c.pin(0).unwrap();
         c.pin(32).unwrap();
         c.budget().unwrap();
         for frame in 0..20 {
-            c.move_pin(0, Vector3::new(0.01 * f64::from(frame), 0.0, 0.0))
-                .unwrap();
+            c.move_pin(0, Vector3::new(0.01 * f64::from(frame), 0.0, 0.0)).unwrap();
             c.add_force(300, Vector3::new(0.0, 0.0, 0.1)).unwrap();
             c.step().unwrap();
             if frame % 5 == 0 {

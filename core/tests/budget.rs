@@ -13,10 +13,7 @@ const FAMILIES: [Families; 4] = [Families(1), Families(3), Families(5), Families
 
 /// Gravity along z, by which the masses are measured; so weak that it drowns no spring.
 fn weighed(def: ClothDef) -> ClothDef {
-    ClothDef {
-        gravity_m_s2: [0.0, 0.0, 1e-6],
-        ..def
-    }
+    ClothDef { gravity_m_s2: [0.0, 0.0, 1e-6], ..def }
 }
 
 /// A cloth as no two are alike: size, cells, families, pins, inertia, damping, budget and a field over seven decades.
@@ -32,24 +29,13 @@ impl Case {
         let mut r = Random::new(seed);
         let (m, n) = (2 + r.below(10) as u32, 2 + r.below(10) as u32);
         let cell = r.log(0.01, 1.0);
-        let (width, height) = (
-            (n - 1) as f32 * cell,
-            (m - 1) as f32 * cell * r.log(0.4, 2.5),
-        );
+        let (width, height) = ((n - 1) as f32 * cell, (m - 1) as f32 * cell * r.log(0.4, 2.5));
         let grid = grid(m, n, width, height, FAMILIES[r.below(4)]);
         let def = weighed(ClothDef {
             rate_hz: r.log(200.0, 4000.0),
             density_kg_m2: r.log(0.03, 1.0),
-            damping_per_s: if r.below(2) == 0 {
-                0.0
-            } else {
-                r.within(0.0, 100.0)
-            },
-            budget: if r.below(2) == 0 {
-                Budget::Tuned
-            } else {
-                Budget::Certified
-            },
+            damping_per_s: if r.below(2) == 0 { 0.0 } else { r.within(0.0, 100.0) },
+            budget: if r.below(2) == 0 { Budget::Tuned } else { Budget::Certified },
             inertia_radius_m: [0.0, r.log(0.5, 8.0) * cell][r.below(2)],
             inertia_max: r.log(1.0, 64.0),
             ..bare()
@@ -59,18 +45,12 @@ impl Case {
         let field = (0..4 * particles).map(|_| r.log(low, high)).collect();
         let most = r.below(particles / 2 + 1);
         let pins = (0..most).map(|_| r.below(particles)).collect();
-        Case {
-            grid,
-            def,
-            field,
-            pins,
-        }
+        Case { grid, def, field, pins }
     }
 
     fn cloth(&self) -> Cloth<'static> {
         let mut c = cloth(&self.grid, &self.def);
-        let view =
-            FieldView::new(4, self.grid.rows(), self.grid.columns(), &self.field).expect("a field");
+        let view = FieldView::new(4, self.grid.rows(), self.grid.columns(), &self.field).expect("a field");
         c.set_stiffness_field(&view);
         for p in &self.pins {
             c.pin(*p).expect("room");
@@ -103,10 +83,7 @@ impl Case {
 /// Uniform noise around the flat sheet, stretched by `stretch` both ways.
 fn crumpled(c: &Cloth<'_>, r: &mut Random, stretch: f32, noise_m: f32) -> Vec<Vector3<f32>> {
     let spread = |r: &mut Random| noise_m * r.within(-1.0, 1.0);
-    positions(c)
-        .into_iter()
-        .map(|p| p * stretch + Vector3::new(spread(r), spread(r), spread(r)))
-        .collect()
+    positions(c).into_iter().map(|p| p * stretch + Vector3::new(spread(r), spread(r), spread(r))).collect()
 }
 
 /// The flat sheet keeps its budget, for any field, pins, masses, damping. Catches a wrong weight of a spring to a pin, a
@@ -122,11 +99,7 @@ fn the_flat_sheet_never_vibrates_faster_than_allowed() {
             Budget::Tuned => f64::from(TUNED_SHARE),
             Budget::Certified => 0.99,
         };
-        assert!(
-            share <= limit * (1.0 + 1e-4),
-            "seed {seed}: {share} of the limit, {:?}",
-            case.def
-        );
+        assert!(share <= limit * (1.0 + 1e-4), "seed {seed}: {share} of the limit, {:?}", case.def);
         let i = case.def.budget as usize;
         highest[i] = highest[i].max(share);
     }
@@ -146,20 +119,14 @@ fn a_certified_sheet_never_vibrates_faster_than_allowed_in_any_shape() {
         let mut r = Random::new(seed + 7000);
         let cell = case.grid.rest_u().min(case.grid.rest_v());
         let (stretch, noise) = (r.within(0.5, 4.0), cell * r.within(0.01, 2.0));
-        let shape: Vec<_> = crumpled(&c, &mut r, stretch, noise)
-            .iter()
-            .map(|p| p.cast())
-            .collect();
+        let shape: Vec<_> = crumpled(&c, &mut r, stretch, noise).iter().map(|p| p.cast()).collect();
         let share = lattice.omega2(&shape, seed) / case.allowed();
         assert!(share <= 0.99 * (1.0 + 1e-4), "seed {seed}: {share}");
         highest = highest.max(share);
         // all springs along one line, where the bound is the sum itself
         let line: Vec<_> = line(&case.grid).iter().map(|p| p.cast()).collect();
         let share = lattice.omega2(&line, seed) / case.allowed();
-        assert!(
-            share <= 0.99 * (1.0 + 1e-4),
-            "seed {seed} in a line: {share}"
-        );
+        assert!(share <= 0.99 * (1.0 + 1e-4), "seed {seed} in a line: {share}");
         highest = highest.max(share);
     }
     assert!(highest > 0.8, "{highest}");
@@ -169,9 +136,7 @@ fn a_certified_sheet_never_vibrates_faster_than_allowed_in_any_shape() {
 fn line(grid: &Grid) -> Vec<Vector3<f32>> {
     let (n, u, v) = (grid.columns(), grid.rest_u(), grid.rest_v());
     let across = 3.0 * (u.hypot(v) + u).max(v);
-    (0..grid.particles())
-        .map(|i| Vector3::new((i % n) as f32 * 1.3 * u + (i / n) as f32 * across, 0.0, 0.0))
-        .collect()
+    (0..grid.particles()).map(|i| Vector3::new((i % n) as f32 * 1.3 * u + (i / n) as f32 * across, 0.0, 0.0)).collect()
 }
 
 /// A 12 x 12 cloth of a random field that the budget must cut, with some pins, crumpled: by a stretch of 30 % (even seeds)
@@ -179,12 +144,7 @@ fn line(grid: &Grid) -> Vec<Vector3<f32>> {
 fn started(seed: u64, def: ClothDef) -> Cloth<'static> {
     let mut r = Random::new(seed);
     let grid = squares(12, 12, 1.0 / 11.0, FAMILIES[seed as usize / 2 % 4]);
-    let def = ClothDef {
-        substeps: 1000,
-        rate_hz: 1.0,
-        inertia_radius_m: if seed % 3 == 0 { 0.3 } else { 0.0 },
-        ..def
-    };
+    let def = ClothDef { substeps: 1000, rate_hz: 1.0, inertia_radius_m: if seed % 3 == 0 { 0.3 } else { 0.0 }, ..def };
     let (low, high) = (1.0, r.log(10.0, 1e7));
     let field: Vec<f32> = (0..4 * 144).map(|_| r.log(low, high)).collect();
     let mut c = cloth(&grid, &def);
@@ -215,25 +175,16 @@ fn reach_after_a_frame(c: &mut Cloth<'_>) -> f32 {
 #[test]
 fn certified_survives_every_start_without_any_clamp() {
     for seed in 0..400u64 {
-        let def = ClothDef {
-            budget: Budget::Certified,
-            damping_per_s: if seed % 5 == 0 { 2.0 } else { 0.0 },
-            ..bare()
-        };
+        let def =
+            ClothDef { budget: Budget::Certified, damping_per_s: if seed % 5 == 0 { 2.0 } else { 0.0 }, ..bare() };
         let reach = reach_after_a_frame(&mut started(seed, def));
         assert!(reach < 60.0, "seed {seed}: {reach} m");
     }
     let tuned = (0..20).filter(|seed| {
-        let def = ClothDef {
-            budget: Budget::Tuned,
-            ..bare()
-        };
+        let def = ClothDef { budget: Budget::Tuned, ..bare() };
         reach_after_a_frame(&mut started(*seed, def)) == f32::INFINITY
     });
-    assert!(
-        tuned.count() > 0,
-        "the starts are too mild to test anything"
-    );
+    assert!(tuned.count() > 0, "the starts are too mild to test anything");
 }
 
 /// With the default damping and speed limit both budgets come to rest from the same starts.
@@ -241,11 +192,7 @@ fn certified_survives_every_start_without_any_clamp() {
 fn both_budgets_come_to_rest_with_the_clamps() {
     for seed in 0..40u64 {
         let budget = [Budget::Certified, Budget::Tuned][seed as usize / 2 % 2];
-        let def = ClothDef {
-            gravity_m_s2: [0.0; 3],
-            budget,
-            ..ClothDef::default()
-        };
+        let def = ClothDef { gravity_m_s2: [0.0; 3], budget, ..ClothDef::default() };
         let mut c = started(seed, def);
         steps(&mut c, 8);
         let energy = c.kinetic_energy_j();
@@ -258,12 +205,7 @@ fn both_budgets_come_to_rest_with_the_clamps() {
 #[test]
 fn only_certified_holds_in_a_line() {
     let largest = |budget| {
-        let def = ClothDef {
-            rate_hz: 9.6,
-            substeps: 100,
-            budget,
-            ..bare()
-        };
+        let def = ClothDef { rate_hz: 9.6, substeps: 100, budget, ..bare() };
         let grid = squares(8, 8, 0.1, Families(3));
         let mut c = cloth(&grid, &def);
         c.set_stiffness_uniform([1.0, 1.0, 1e6, 0.0]).unwrap();
@@ -271,11 +213,7 @@ fn only_certified_holds_in_a_line() {
         let shape: Vec<_> = line(&grid).iter().map(|p| p + r.vector(1e-4)).collect();
         put(&mut c, &shape);
         let flags = c.step().unwrap();
-        if flags.0 == 0 {
-            positions(&c).iter().fold(0.0f32, |a, p| a.max(p.norm()))
-        } else {
-            f32::INFINITY
-        }
+        if flags.0 == 0 { positions(&c).iter().fold(0.0f32, |a, p| a.max(p.norm())) } else { f32::INFINITY }
     };
     let (certified, tuned) = (largest(Budget::Certified), largest(Budget::Tuned));
     assert!(certified < 10.0, "{certified} m");
@@ -288,10 +226,7 @@ fn only_certified_holds_in_a_line() {
 fn twenty_five_percent_above_the_limit_blows_up() {
     for (seed, damping) in [(0, 0.0), (1, 0.0), (2, 50.0), (3, 50.0)] {
         let grid = squares(9, 9, 0.125, Families::ALL);
-        let def = ClothDef {
-            damping_per_s: damping,
-            ..weighed(bare())
-        };
+        let def = ClothDef { damping_per_s: damping, ..weighed(bare()) };
         let mut c = cloth(&grid, &def);
         if seed % 2 == 0 {
             c.set_stiffness_uniform([1e6, 1e6, 3e5, 2e4]).unwrap();
@@ -308,10 +243,7 @@ fn twenty_five_percent_above_the_limit_blows_up() {
             // omega^2 dt^2 = excess (4 - 2 c dt)
             let (c, e) = (f64::from(damping), excess);
             let dt = 4.0 * e / (e * c + (e * e * c * c + 4.0 * e * omega2).sqrt());
-            let free = ClothDef {
-                gravity_m_s2: [0.0; 3],
-                ..def
-            };
+            let free = ClothDef { gravity_m_s2: [0.0; 3], ..def };
             let mut twin = Twin::of_lattice(&grid, &free, &lattice, dt as f32);
             let mut r = Random::new(9);
             for i in 0..81 {
@@ -322,13 +254,7 @@ fn twenty_five_percent_above_the_limit_blows_up() {
             for _ in 0..1500 {
                 twin.substep(1.0);
             }
-            twin.x.iter().fold(0.0f32, |a, p| {
-                if p.norm() < 1e30 {
-                    a.max(p.norm())
-                } else {
-                    f32::INFINITY
-                }
-            })
+            twin.x.iter().fold(0.0f32, |a, p| if p.norm() < 1e30 { a.max(p.norm()) } else { f32::INFINITY })
         };
         assert!(reach(1.25) > 1e3, "seed {seed}: {} m", reach(1.25));
         assert!(reach(0.9) < 1.5, "seed {seed}: {} m", reach(0.9));
@@ -338,18 +264,8 @@ fn twenty_five_percent_above_the_limit_blows_up() {
 /// Before the budget and after it the families of a uniform field stand in the same ratio, with bend at most 2 %.
 #[test]
 fn ratios_are_kept() {
-    for (i, k) in [
-        [8e5, 3e5, 2e5, 1e3],
-        [1e5, 1e6, 1e4, 1e6],
-        [5e4, 5e4, 2e6, 1e2],
-    ]
-    .iter()
-    .enumerate()
-    {
-        let def = weighed(ClothDef {
-            budget: [Budget::Tuned, Budget::Certified][i % 2],
-            ..bare()
-        });
+    for (i, k) in [[8e5, 3e5, 2e5, 1e3], [1e5, 1e6, 1e4, 1e6], [5e4, 5e4, 2e6, 1e2]].iter().enumerate() {
+        let def = weighed(ClothDef { budget: [Budget::Tuned, Budget::Certified][i % 2], ..bare() });
         let mut c = cloth(&squares(7, 6, 0.1, Families::ALL), &def);
         c.set_stiffness_uniform(*k).unwrap();
         let report = c.budget().unwrap();
@@ -364,11 +280,7 @@ fn ratios_are_kept() {
             };
             // a spring in the middle, where all ends are alike
             let inner = |i: usize| (2..5).contains(&(i / 6)) && (2..4).contains(&(i % 6));
-            let s = lattice
-                .springs
-                .iter()
-                .find(|s| s.family == family && (inner(s.a) || inner(s.b)))
-                .unwrap();
+            let s = lattice.springs.iter().find(|s| s.family == family && (inner(s.a) || inner(s.b))).unwrap();
             s.k / asked
         };
         let all = [Family::Warp, Family::Weft, Family::Shear, Family::Bend].map(cut);
@@ -393,18 +305,12 @@ fn the_report_agrees_with_the_springs() {
         let (mut before, mut after) = (0.0, 0.0);
         for s in &lattice.springs {
             let asked = case.asked(s);
-            assert!(
-                s.k <= asked * 1.001 + strongest * 1e-5,
-                "seed {seed}: {s:?} from {asked}"
-            );
+            assert!(s.k <= asked * 1.001 + strongest * 1e-5, "seed {seed}: {s:?} from {asked}");
             before += asked;
             after += s.k;
         }
         let cut = 1.0 - after / before;
-        assert!(
-            (cut - f64::from(report.cut_fraction)).abs() < 1e-3,
-            "seed {seed}: {cut}, {report:?}"
-        );
+        assert!((cut - f64::from(report.cut_fraction)).abs() < 1e-3, "seed {seed}: {cut}, {report:?}");
         cut_some += usize::from(cut > 0.1);
     }
     assert!((20..80).contains(&cut_some), "{cut_some}");
@@ -443,18 +349,10 @@ fn max_dt_is_where_the_cut_begins() {
 /// With damping alone (hardly any stiffness) the limit is c dt < 2.
 #[test]
 fn max_dt_of_a_very_soft_field_is_that_of_the_damping() {
-    let def = ClothDef {
-        damping_per_s: 100.0,
-        ..bare()
-    };
+    let def = ClothDef { damping_per_s: 100.0, ..bare() };
     let mut c = cloth(&squares(3, 3, 0.1, Families::ALL), &def);
     c.set_stiffness_uniform([1e-20; 4]).unwrap();
-    common::near(
-        f64::from(c.budget().unwrap().max_dt_s),
-        0.02,
-        1e-6,
-        "max dt",
-    );
+    common::near(f64::from(c.budget().unwrap().max_dt_s), 0.02, 1e-6, "max dt");
 }
 
 /// A soft fabric is stepped as it is: not scaled up to the budget, and the report says that nothing was cut.
@@ -472,10 +370,7 @@ fn soft_fields_are_untouched() {
         let strongest = lattice.springs.iter().fold(0.0f64, |a, s| a.max(s.k));
         for s in lattice.springs.iter().filter(|s| s.k > 0.0) {
             let asked = case.asked(s);
-            assert!(
-                (s.k - asked).abs() <= 1e-3 * asked + 1e-5 * strongest,
-                "seed {seed}: {s:?} from {asked}"
-            );
+            assert!((s.k - asked).abs() <= 1e-3 * asked + 1e-5 * strongest, "seed {seed}: {s:?} from {asked}");
         }
     }
 }
@@ -484,16 +379,7 @@ fn soft_fields_are_untouched() {
 /// The step stays finite and the report says finite things.
 #[test]
 fn hostile_fields_are_carried() {
-    const BAD: [f32; 8] = [
-        0.0,
-        -0.0,
-        1e-45,
-        f32::MIN_POSITIVE,
-        1.0,
-        1e9,
-        1e30,
-        f32::MAX,
-    ];
+    const BAD: [f32; 8] = [0.0, -0.0, 1e-45, f32::MIN_POSITIVE, 1.0, 1e9, 1e30, f32::MAX];
     for seed in 0..120 {
         let mut r = Random::new(seed);
         let mut case = Case::new(seed);
@@ -508,16 +394,12 @@ fn hostile_fields_are_carried() {
         if case.def.budget == Budget::Tuned {
             (case.def.speed_limit, case.def.compression_limit) = (0.25, true);
         }
-        let field: Vec<f32> = (0..4 * m * n)
-            .map(|_| BAD[(first + r.below(kinds)) % 8])
-            .collect();
+        let field: Vec<f32> = (0..4 * m * n).map(|_| BAD[(first + r.below(kinds)) % 8]).collect();
         let mut c = case.cloth();
         c.set_stiffness_field(&FieldView::new(4, m, n, &field).unwrap());
         let report = c.budget().unwrap();
         assert!(
-            (0.0..=1.0).contains(&report.cut_fraction)
-                && report.max_dt_s > 0.0
-                && report.inertia_added >= -1e-6,
+            (0.0..=1.0).contains(&report.cut_fraction) && report.max_dt_s > 0.0 && report.inertia_added >= -1e-6,
             "seed {seed}: {report:?}"
         );
         let noise = 0.3 * case.grid.rest_u();
@@ -534,14 +416,9 @@ fn hostile_fields_are_carried() {
 #[test]
 fn the_largest_numbers_keep_the_ratios() {
     let grid = squares(6, 6, 0.1, Families::ALL);
-    let def = weighed(ClothDef {
-        density_kg_m2: 1e6,
-        rate_hz: 10_000.0,
-        ..bare()
-    });
+    let def = weighed(ClothDef { density_kg_m2: 1e6, rate_hz: 10_000.0, ..bare() });
     let mut c = cloth(&grid, &def);
-    c.set_stiffness_uniform([f32::MAX, f32::MAX, f32::MAX / 2.0, f32::MAX])
-        .unwrap();
+    c.set_stiffness_uniform([f32::MAX, f32::MAX, f32::MAX / 2.0, f32::MAX]).unwrap();
     assert_eq!(c.budget().unwrap().cut_fraction, 0.0);
     for s in measure(&mut c).springs {
         let k = match s.family {

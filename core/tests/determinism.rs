@@ -34,15 +34,8 @@ fn twins(seed: u64, rows: u32, columns: u32) -> (Cloth<'static>, Twin) {
     let n = grid.particles();
     let dt = def.dt_s();
     let top = 0.05 * c.particle_mass_kg() / (dt * dt);
-    let field: Vec<f32> = (0..4 * n)
-        .map(|i| {
-            if i < 3 * n {
-                r.log(0.1 * top, top)
-            } else {
-                r.log(1e-5, 2e-3) * top
-            }
-        })
-        .collect();
+    let field: Vec<f32> =
+        (0..4 * n).map(|i| if i < 3 * n { r.log(0.1 * top, top) } else { r.log(1e-5, 2e-3) * top }).collect();
     c.set_stiffness_field(&FieldView::new(4, rows as usize, columns as usize, &field).unwrap());
     let mut twin = Twin::new(&grid, &def, positions(&c), &field);
     for _ in 0..r.below(5) {
@@ -74,16 +67,7 @@ fn twins(seed: u64, rows: u32, columns: u32) -> (Cloth<'static>, Twin) {
 /// the same bits. Catches a row that is moved too early, a border that is read wrongly, another order of sums.
 #[test]
 fn the_step_in_lanes_has_the_bits_of_the_scalar_twin() {
-    let sizes = [
-        (2, 2),
-        (3, 2),
-        (2, 9),
-        (4, 15),
-        (5, 16),
-        (7, 17),
-        (33, 3),
-        (12, 33),
-    ];
+    let sizes = [(2, 2), (3, 2), (2, 9), (4, 15), (5, 16), (7, 17), (33, 3), (12, 33)];
     for (i, (rows, columns)) in sizes.into_iter().enumerate() {
         for variant in 0..8 {
             let seed = 8 * i as u64 + variant;
@@ -105,10 +89,7 @@ fn the_step_in_lanes_has_the_bits_of_the_scalar_twin() {
                 }
                 steps(&mut c, 1);
                 twin.step();
-                assert!(
-                    bits(&c) == twin.bits(),
-                    "{rows} x {columns}, seed {seed}, frame {frame}"
-                );
+                assert!(bits(&c) == twin.bits(), "{rows} x {columns}, seed {seed}, frame {frame}");
             }
             let moved = twin.x.iter().fold(0.0f32, |a, p| a.max(p.norm()));
             assert!(moved < 50.0, "the twins exploded together: {moved}");
@@ -124,9 +105,7 @@ fn the_twins_do_reach_their_limits() {
         let (mut c, mut twin) = twins(seed, 7, 17);
         let limit = twin.def.speed_limit * twin.grid.rest_u().min(twin.grid.rest_v()) / twin.dt;
         steps(&mut c, 5);
-        limited += c_speeds(&c)
-            .filter(|v| limit > 0.0 && (v / limit - 1.0).abs() < 1e-6)
-            .count();
+        limited += c_speeds(&c).filter(|v| limit > 0.0 && (v / limit - 1.0).abs() < 1e-6).count();
         twin.def.compression_limit ^= true;
         for _ in 0..5 {
             twin.step();
@@ -161,15 +140,11 @@ fn a_run_repeats_itself() {
 #[test]
 fn the_origin_is_not_in_the_bits() {
     let run = |origin: Vector3<f64>| {
-        let def = ClothDef {
-            origin_m: origin.into(),
-            ..ClothDef::default()
-        };
+        let def = ClothDef { origin_m: origin.into(), ..ClothDef::default() };
         let mut c = cloth(&squares(8, 8, 0.125, Families::ALL), &def);
         c.set_stiffness_uniform([400.0, 400.0, 100.0, 8.0]).unwrap();
         c.pin(0).unwrap();
-        c.move_pin(0, origin + Vector3::new(0.25, 0.5, 0.125))
-            .unwrap();
+        c.move_pin(0, origin + Vector3::new(0.25, 0.5, 0.125)).unwrap();
         steps(&mut c, 60);
         let at = c.world_position(63).unwrap() - origin;
         assert!((at - c.position(63).unwrap().cast()).norm() < 1e-9 * origin.norm().max(1.0));
@@ -200,35 +175,16 @@ const SIZES: [(u32, u32); 4] = [(2, 2), (3, 97), (17, 31), (32, 32)];
 /// 300 frames of 16 substeps; with all families a graded field, inertia and the default clamps, with the structural ones
 /// alone a uniform field without clamps.
 fn golden(scene: Scene, (rows, columns): (u32, u32), all: bool) -> u64 {
-    let grid = grid(
-        rows,
-        columns,
-        1.0,
-        1.0,
-        if all {
-            Families::ALL
-        } else {
-            Families::STRUCTURAL
-        },
-    );
+    let grid = grid(rows, columns, 1.0, 1.0, if all { Families::ALL } else { Families::STRUCTURAL });
     let def = if all {
-        ClothDef {
-            inertia_radius_m: 0.3,
-            ..ClothDef::default()
-        }
+        ClothDef { inertia_radius_m: 0.3, ..ClothDef::default() }
     } else {
-        ClothDef {
-            budget: taut::Budget::Certified,
-            speed_limit: 0.0,
-            compression_limit: false,
-            ..ClothDef::default()
-        }
+        ClothDef { budget: taut::Budget::Certified, speed_limit: 0.0, compression_limit: false, ..ClothDef::default() }
     };
     let mut c = cloth(&grid, &def);
     if all {
-        let field: Vec<f32> = (0..4 * 35)
-            .map(|i| [900.0, 500.0, 150.0, 20.0][i / 35] * (1.0 + (i % 35) as f32 / 16.0))
-            .collect();
+        let field: Vec<f32> =
+            (0..4 * 35).map(|i| [900.0, 500.0, 150.0, 20.0][i / 35] * (1.0 + (i % 35) as f32 / 16.0)).collect();
         c.set_stiffness_field(&FieldView::new(4, 5, 7, &field).unwrap());
     } else {
         c.set_stiffness_uniform([60.0, 45.0, 0.0, 0.0]).unwrap();

@@ -4,9 +4,7 @@ mod common;
 
 use common::{Random, bare, bits, cloth, positions, snapshot, squares, steps};
 use taut::field::FieldView;
-use taut::{
-    Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Hash64, StepFlags, Vector3,
-};
+use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Hash64, StepFlags, Vector3};
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
@@ -21,64 +19,25 @@ fn definitions_refuse_what_is_not_finite() {
         };
         let all = [
             ClothDef { rate_hz: x, ..d },
-            ClothDef {
-                density_kg_m2: x,
-                ..d
-            },
-            ClothDef {
-                damping_per_s: x,
-                ..d
-            },
-            ClothDef {
-                speed_limit: x,
-                ..d
-            },
-            ClothDef {
-                inertia_radius_m: x,
-                ..d
-            },
-            ClothDef {
-                inertia_max: x,
-                ..d
-            },
-            ClothDef {
-                gravity_m_s2: three(0),
-                ..d
-            },
-            ClothDef {
-                u_axis: three(1),
-                ..d
-            },
-            ClothDef {
-                v_axis: three(2),
-                ..d
-            },
-            ClothDef {
-                origin_m: [0.0, f64::from(x), 0.0],
-                ..d
-            },
+            ClothDef { density_kg_m2: x, ..d },
+            ClothDef { damping_per_s: x, ..d },
+            ClothDef { speed_limit: x, ..d },
+            ClothDef { inertia_radius_m: x, ..d },
+            ClothDef { inertia_max: x, ..d },
+            ClothDef { gravity_m_s2: three(0), ..d },
+            ClothDef { u_axis: three(1), ..d },
+            ClothDef { v_axis: three(2), ..d },
+            ClothDef { origin_m: [0.0, f64::from(x), 0.0], ..d },
         ];
         let grid = Grid::new(&GridDef::default()).unwrap();
         for def in all {
             assert_eq!(def.check(), Err(Error::NotFinite), "{def:?}");
             assert_eq!(Cloth::memory(&grid, &def), Err(Error::NotFinite));
             let mut block = [7.0; 64];
-            assert_eq!(
-                Cloth::create(&grid, &def, &mut block).err(),
-                Some(Error::NotFinite)
-            );
+            assert_eq!(Cloth::create(&grid, &def, &mut block).err(), Some(Error::NotFinite));
             assert_eq!(block, [7.0; 64]);
         }
-        for g in [
-            GridDef {
-                width_m: x,
-                ..GridDef::default()
-            },
-            GridDef {
-                height_m: x,
-                ..GridDef::default()
-            },
-        ] {
+        for g in [GridDef { width_m: x, ..GridDef::default() }, GridDef { height_m: x, ..GridDef::default() }] {
             assert_eq!(Grid::new(&g), Err(Error::SideLength));
         }
     }
@@ -89,27 +48,15 @@ fn definitions_refuse_what_is_not_finite() {
 #[test]
 fn definitions_refuse_what_underflows() {
     for width_m in [1e-22, 1e-40, 9e-7] {
-        let g = GridDef {
-            width_m,
-            ..GridDef::default()
-        };
+        let g = GridDef { width_m, ..GridDef::default() };
         assert_eq!(Grid::new(&g), Err(Error::SideLength));
     }
     for speed_limit in [1e-30, 9e-7] {
-        let d = ClothDef {
-            speed_limit,
-            ..ClothDef::default()
-        };
+        let d = ClothDef { speed_limit, ..ClothDef::default() };
         assert_eq!(d.check(), Err(Error::OutOfRange));
     }
     // the smallest of everything that is accepted
-    let tiny = GridDef {
-        rows: 3,
-        columns: 4096,
-        width_m: 1e-6,
-        height_m: 1e-6,
-        ..GridDef::default()
-    };
+    let tiny = GridDef { rows: 3, columns: 4096, width_m: 1e-6, height_m: 1e-6, ..GridDef::default() };
     let grid = Grid::new(&tiny).unwrap();
     for budget in [Budget::Tuned, Budget::Certified] {
         let def = ClothDef {
@@ -126,20 +73,14 @@ fn definitions_refuse_what_underflows() {
         c.set_stiffness_uniform([f32::MAX; 4]).unwrap();
         c.pin(0).unwrap();
         let report = c.budget().unwrap();
-        assert!(
-            report.max_dt_s > 0.0 && report.cut_fraction > 0.9,
-            "{report:?}"
-        );
+        assert!(report.max_dt_s > 0.0 && report.cut_fraction > 0.9, "{report:?}");
         steps(&mut c, 3);
     }
 }
 
 #[test]
 fn setters_refuse_what_is_not_finite_and_change_nothing() {
-    let def = ClothDef {
-        features: Features::PULL,
-        ..bare()
-    };
+    let def = ClothDef { features: Features::PULL, ..bare() };
     let mut c = cloth(&squares(4, 4, 0.1, Families::ALL), &def);
     c.set_stiffness_uniform([100.0, 100.0, 30.0, 2.0]).unwrap();
     c.pin(3).unwrap();
@@ -160,10 +101,7 @@ fn setters_refuse_what_is_not_finite_and_change_nothing() {
         }
         let mut field = [1.0; 36];
         field[20] = x;
-        assert_eq!(
-            FieldView::new(4, 3, 3, &field).err(),
-            Some(Error::NotFinite)
-        );
+        assert_eq!(FieldView::new(4, 3, 3, &field).err(), Some(Error::NotFinite));
     }
     // finite but beyond any use
     let far = Vector3::new(0.0, 1.1e6, 0.0);
@@ -171,23 +109,14 @@ fn setters_refuse_what_is_not_finite_and_change_nothing() {
     assert_eq!(c.set_velocity(5, -far), Err(Error::OutOfRange));
     assert_eq!(c.add_force(5, far * 1e4), Err(Error::OutOfRange));
     for p in [16, usize::MAX] {
-        assert_eq!(
-            c.set_position(p, Vector3::zeros()),
-            Err(Error::NoSuchParticle)
-        );
-        assert_eq!(
-            c.set_velocity(p, Vector3::zeros()),
-            Err(Error::NoSuchParticle)
-        );
+        assert_eq!(c.set_position(p, Vector3::zeros()), Err(Error::NoSuchParticle));
+        assert_eq!(c.set_velocity(p, Vector3::zeros()), Err(Error::NoSuchParticle));
         assert_eq!(c.add_force(p, Vector3::zeros()), Err(Error::NoSuchParticle));
         assert!(c.position(p).is_err() && c.velocity(p).is_err() && c.world_position(p).is_err());
     }
     assert_eq!((c.budget().unwrap(), c.state_hash()), (budget, hash));
     let mut without = cloth(&squares(4, 4, 0.1, Families::ALL), &bare());
-    assert_eq!(
-        without.add_force(5, Vector3::zeros()),
-        Err(Error::FeatureOff)
-    );
+    assert_eq!(without.add_force(5, Vector3::zeros()), Err(Error::FeatureOff));
 }
 
 /// A snapshot of finite numbers at the end of what f32 holds, with its checksum right: the next step passes infinity.
@@ -210,11 +139,7 @@ fn near_infinity(c: &mut Cloth<'_>) {
 /// the frame, or keeps a NaN at the far end of a row, fails here.
 #[test]
 fn a_frame_that_leaves_the_finite_is_taken_back() {
-    let def = ClothDef {
-        features: Features::PULL,
-        substeps: 3,
-        ..bare()
-    };
+    let def = ClothDef { features: Features::PULL, substeps: 3, ..bare() };
     for columns in [2, 15, 16, 17] {
         let mut c = cloth(&squares(6, columns, 0.1, Families::ALL), &def);
         c.set_stiffness_uniform([100.0, 100.0, 30.0, 2.0]).unwrap();
@@ -227,19 +152,14 @@ fn a_frame_that_leaves_the_finite_is_taken_back() {
         c.add_force(3, Vector3::new(1.0, 0.0, 0.0)).unwrap();
         let flags = c.step().unwrap();
         assert!(flags.contains(StepFlags::NON_FINITE));
-        assert_eq!(
-            (c.state_hash(), c.step_index(), bits(&c)),
-            (hash, index, state.clone())
-        );
+        assert_eq!((c.state_hash(), c.step_index(), bits(&c)), (hash, index, state.clone()));
         // again, and with the forces and the target of the lost frame gone
         assert!(c.step().unwrap().contains(StepFlags::NON_FINITE));
         assert_eq!((c.state_hash(), bits(&c)), (hash, state));
         // and nothing of it stays once the cause is gone
         c.restore(&well).unwrap();
         let mut other = cloth(c.grid(), &def);
-        other
-            .set_stiffness_uniform([100.0, 100.0, 30.0, 2.0])
-            .unwrap();
+        other.set_stiffness_uniform([100.0, 100.0, 30.0, 2.0]).unwrap();
         other.restore(&well).unwrap();
         steps(&mut c, 5);
         steps(&mut other, 5);
@@ -250,12 +170,7 @@ fn a_frame_that_leaves_the_finite_is_taken_back() {
 /// The same for a real explosion within one frame: `Tuned` without clamps, folded so that every spring pulls one way.
 #[test]
 fn an_explosion_within_a_frame_is_taken_back() {
-    let def = ClothDef {
-        rate_hz: 1.0,
-        substeps: 1000,
-        budget: Budget::Tuned,
-        ..bare()
-    };
+    let def = ClothDef { rate_hz: 1.0, substeps: 1000, budget: Budget::Tuned, ..bare() };
     let mut c = cloth(&squares(8, 8, 0.1, Families(3)), &def);
     c.set_stiffness_uniform([1.0, 1.0, 1e6, 0.0]).unwrap();
     let mut r = Random::new(3);
@@ -300,13 +215,7 @@ fn the_largest_accepted_inputs_never_leave_a_number_that_is_not_finite() {
             }
             let flags = c.step().unwrap();
             let finite = |v: Vector3<f32>| v.iter().all(|x| x.is_finite());
-            assert!(
-                positions(&c)
-                    .into_iter()
-                    .chain(common::velocities(&c))
-                    .all(finite),
-                "seed {seed}, {flags:?}"
-            );
+            assert!(positions(&c).into_iter().chain(common::velocities(&c)).all(finite), "seed {seed}, {flags:?}");
         }
     }
 }

@@ -9,16 +9,7 @@ use taut::{Budget, Cloth, ClothDef, Families, Grid, Vector3};
 fn inertia_of(c: &mut Cloth<'_>) -> Vec<f64> {
     let (g, dt) = (c.def().gravity_m_s2[2], c.def().dt_s());
     steps(c, 1);
-    velocities(c)
-        .iter()
-        .map(|v| {
-            if v.z == 0.0 {
-                0.0
-            } else {
-                f64::from(g) * f64::from(dt) / f64::from(v.z)
-            }
-        })
-        .collect()
+    velocities(c).iter().map(|v| if v.z == 0.0 { 0.0 } else { f64::from(g) * f64::from(dt) / f64::from(v.z) }).collect()
 }
 
 /// The formula of the documentation, every particle against every pin.
@@ -70,10 +61,7 @@ fn q_is_that_of_the_nearest_pin() {
         let e = expected(&grid, &def, &pins);
         let free = e.iter().filter(|q| **q > 0.0);
         for (i, (q, e)) in q.iter().zip(&e).enumerate() {
-            assert!(
-                (q - e).abs() <= 2e-5 * e,
-                "seed {seed}, particle {i}: {q} instead of {e}"
-            );
+            assert!((q - e).abs() <= 2e-5 * e, "seed {seed}, particle {i}: {q} instead of {e}");
             let kind = if *e <= 1.0 {
                 0
             } else if *e < f64::from(def.inertia_max) {
@@ -98,22 +86,14 @@ fn q_is_that_of_the_nearest_pin() {
 #[test]
 fn nothing_pinned_or_no_radius_is_no_inertia() {
     for (radius, max, pin) in [(0.0, 32.0, true), (0.3, 1.0, true), (0.3, 32.0, false)] {
-        let def = ClothDef {
-            gravity_m_s2: [0.0, 0.0, 1e-3],
-            inertia_radius_m: radius,
-            inertia_max: max,
-            ..bare()
-        };
+        let def = ClothDef { gravity_m_s2: [0.0, 0.0, 1e-3], inertia_radius_m: radius, inertia_max: max, ..bare() };
         let mut c = cloth(&squares(6, 6, 0.1, Families::ALL), &def);
         c.set_stiffness_uniform([100.0; 4]).unwrap();
         if pin {
             c.pin(14).unwrap();
         }
         let q = inertia_of(&mut c);
-        assert!(
-            q.iter().all(|q| *q == 0.0 || (q - 1.0).abs() < 1e-6),
-            "{q:?}"
-        );
+        assert!(q.iter().all(|q| *q == 0.0 || (q - 1.0).abs() < 1e-6), "{q:?}");
         assert_eq!(q.iter().filter(|q| **q == 0.0).count(), usize::from(pin));
         assert!(c.budget().unwrap().inertia_added.abs() < 1e-6);
     }
@@ -125,10 +105,7 @@ fn nothing_pinned_or_no_radius_is_no_inertia() {
 fn momentum_is_kept_when_pins_change() {
     let mut r = Random::new(11);
     let g = squares(9, 14, 0.1, Families::ALL);
-    let def = ClothDef {
-        inertia_radius_m: 0.5,
-        ..bare()
-    };
+    let def = ClothDef { inertia_radius_m: 0.5, ..bare() };
     let mut c = cloth(&g, &def);
     c.set_stiffness_uniform([50.0, 50.0, 10.0, 1.0]).unwrap();
     let mut pins = vec![0, 13];
@@ -169,21 +146,14 @@ fn momentum_is_kept_when_pins_change() {
 #[test]
 fn the_kinetic_energy_has_the_inertial_mass() {
     let g = squares(7, 7, 0.1, Families::ALL);
-    let def = ClothDef {
-        inertia_radius_m: 0.4,
-        ..bare()
-    };
+    let def = ClothDef { inertia_radius_m: 0.4, ..bare() };
     let mut c = cloth(&g, &def);
     c.set_stiffness_uniform([50.0; 4]).unwrap();
     c.pin(24).unwrap();
     stir(&mut c, &mut Random::new(2), 2.0);
     let q = expected(&g, &def, &[24]);
     let m = f64::from(c.particle_mass_kg());
-    let by_hand: f64 = velocities(&c)
-        .iter()
-        .zip(&q)
-        .map(|(v, q)| 0.5 * q * m * v.cast::<f64>().norm_squared())
-        .sum();
+    let by_hand: f64 = velocities(&c).iter().zip(&q).map(|(v, q)| 0.5 * q * m * v.cast::<f64>().norm_squared()).sum();
     near(c.kinetic_energy_j(), by_hand, 1e-5, "kinetic energy");
 }
 
@@ -228,12 +198,7 @@ fn the_weight_is_unchanged() {
             reaction += d * (k * (1.0 - l0 / d.norm()));
         }
     }
-    near(
-        reaction.y,
-        -62.0 * f64::from(m) * 9.81,
-        2e-3,
-        "weight on the pins",
-    );
+    near(reaction.y, -62.0 * f64::from(m) * 9.81, 2e-3, "weight on the pins");
     assert!(reaction.x.abs() < 2e-3 * reaction.y.abs());
 }
 
@@ -241,11 +206,7 @@ fn the_weight_is_unchanged() {
 #[test]
 fn the_pins_stretch_less_at_the_same_step() {
     let stretch = |inertia_radius_m| {
-        let def = ClothDef {
-            budget: Budget::Tuned,
-            inertia_radius_m,
-            ..ClothDef::default()
-        };
+        let def = ClothDef { budget: Budget::Tuned, inertia_radius_m, ..ClothDef::default() };
         let mut c = cloth(&squares(17, 17, 0.0625, Families::ALL), &def);
         c.set_stiffness_uniform([1e5, 1e5, 3e4, 2e3]).unwrap();
         c.pin(0).unwrap();

@@ -8,11 +8,7 @@ use taut::{Cloth, ClothDef, Error, Families, Vector3};
 /// 240 substeps a second, as frames of four substeps or of one.
 fn pair() -> [Cloth<'static>; 2] {
     [(60.0, 4), (240.0, 1)].map(|(rate_hz, substeps)| {
-        let def = ClothDef {
-            rate_hz,
-            substeps,
-            ..ClothDef::default()
-        };
+        let def = ClothDef { rate_hz, substeps, ..ClothDef::default() };
         let mut c = cloth(&squares(5, 5, 0.25, Families::ALL), &def);
         c.set_stiffness_uniform([200.0, 100.0, 30.0, 2.0]).unwrap();
         c.pin(0).unwrap();
@@ -28,10 +24,7 @@ fn pair() -> [Cloth<'static>; 2] {
 fn pins_are_interpolated_over_the_substeps() {
     let [mut coarse, mut fine] = pair();
     let mut at = [Vector3::zeros(), Vector3::new(1.0, 0.0, 0.0)];
-    let way = [
-        Vector3::new(0.0625, -0.125, 0.25),
-        Vector3::new(0.0, 0.0, -0.0625),
-    ];
+    let way = [Vector3::new(0.0625, -0.125, 0.25), Vector3::new(0.0, 0.0, -0.0625)];
     for frame in 0..10 {
         let way = way.map(|w: Vector3<f64>| if frame % 3 == 2 { -w } else { w });
         for (i, p) in [0, 4].into_iter().enumerate() {
@@ -125,11 +118,7 @@ fn pinning_stops_and_pinning_twice_does_nothing() {
 fn the_order_of_pinning_does_not_matter() {
     let mut random = Random::new(5);
     let made = |order: &[usize], extra: &[usize]| {
-        let def = ClothDef {
-            max_pins: 20,
-            inertia_radius_m: 0.4,
-            ..ClothDef::default()
-        };
+        let def = ClothDef { max_pins: 20, inertia_radius_m: 0.4, ..ClothDef::default() };
         let mut c = cloth(&squares(8, 8, 0.1, Families::ALL), &def);
         c.set_stiffness_uniform([300.0, 300.0, 90.0, 6.0]).unwrap();
         for p in order.iter().chain(extra) {
@@ -178,13 +167,7 @@ fn a_pinned_particle_that_is_placed_stays_there() {
 /// Small grids take the default definition, though it has room for more pins than they have particles.
 #[test]
 fn every_particle_of_a_small_grid_can_be_pinned() {
-    let mut c = cloth(
-        &squares(2, 3, 0.1, Families::ALL),
-        &ClothDef {
-            inertia_radius_m: 0.3,
-            ..ClothDef::default()
-        },
-    );
+    let mut c = cloth(&squares(2, 3, 0.1, Families::ALL), &ClothDef { inertia_radius_m: 0.3, ..ClothDef::default() });
     c.set_stiffness_uniform([10.0; 4]).unwrap();
     for p in 0..6 {
         c.pin(p).unwrap();
@@ -198,11 +181,7 @@ fn every_particle_of_a_small_grid_can_be_pinned() {
 
 #[test]
 fn what_cannot_be_is_named_and_changes_nothing() {
-    let def = ClothDef {
-        max_pins: 2,
-        origin_m: [1e9, 0.0, 0.0],
-        ..ClothDef::default()
-    };
+    let def = ClothDef { max_pins: 2, origin_m: [1e9, 0.0, 0.0], ..ClothDef::default() };
     let mut c = cloth(&squares(4, 4, 0.1, Families::ALL), &def);
     c.set_stiffness_uniform([10.0; 4]).unwrap();
     c.pin(5).unwrap();

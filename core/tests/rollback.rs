@@ -8,13 +8,7 @@ use taut::{Cloth, ClothDef, Error, Families, Features, Grid, Vector3};
 
 /// Inertia, pulls and everything else that is state.
 fn def() -> ClothDef {
-    ClothDef {
-        substeps: 4,
-        inertia_radius_m: 0.3,
-        features: Features::PULL,
-        max_pins: 12,
-        ..ClothDef::default()
-    }
+    ClothDef { substeps: 4, inertia_radius_m: 0.3, features: Features::PULL, max_pins: 12, ..ClothDef::default() }
 }
 
 fn made() -> Cloth<'static> {
@@ -198,12 +192,7 @@ fn the_bytes_are_those_that_are_documented() {
     let pins: Vec<f32> = (0..14).map(|i| number(9 * n + i)).collect();
     let at = |p: usize| c.position(p).unwrap();
     let (a, b) = (at(3), at(20));
-    assert_eq!(
-        pins,
-        [
-            3.0, a.x, a.y, a.z, 1.5, -2.0, 0.25, 20.0, b.x, b.y, b.z, b.x, b.y, b.z
-        ]
-    );
+    assert_eq!(pins, [3.0, a.x, a.y, a.z, 1.5, -2.0, 0.25, 20.0, b.x, b.y, b.z, b.x, b.y, b.z]);
     let mut h = taut::Hash64::new();
     h.bytes(&s[..s.len() - 8]);
     assert_eq!(u64_at(s.len() - 8), h.finish());
@@ -250,11 +239,7 @@ fn damaged_snapshots_are_refused_and_change_nothing() {
     s[25] ^= 1;
     refuse(&s, Error::Checksum, "step index");
 
-    let put = |at: usize, number: u32| {
-        forged(&saved, |s| {
-            s[at..at + 4].copy_from_slice(&number.to_le_bytes())
-        })
-    };
+    let put = |at: usize, number: u32| forged(&saved, |s| s[at..at + 4].copy_from_slice(&number.to_le_bytes()));
     refuse(&put(0, 7), Error::WrongKind, "magic");
     refuse(&put(8, 2), Error::UnsupportedVersion, "version");
     refuse(&put(12, 47), Error::Shape, "size too small");
@@ -267,11 +252,7 @@ fn damaged_snapshots_are_refused_and_change_nothing() {
     let (n, pins) = (9 * 11, 40 + 4 * 6 * 9 * 11);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for i in [0, 3 * n + 7, 6 * n + 1, 6 * n + 13] {
-            refuse(
-                &put(40 + 4 * i, bad.to_bits()),
-                Error::NotFinite,
-                "not finite",
-            );
+            refuse(&put(40 + 4 * i, bad.to_bits()), Error::NotFinite, "not finite");
         }
     }
     for index in [-1.0, 8.0, 4.5, 99.0, 1e30] {
@@ -310,63 +291,26 @@ fn snapshots_of_other_cloths_are_foreign() {
     let others = [
         ClothDef { rate_hz: 61.0, ..d },
         ClothDef { substeps: 5, ..d },
-        ClothDef {
-            density_kg_m2: 0.3,
-            ..d
-        },
-        ClothDef {
-            gravity_m_s2: [0.0, -9.8, 0.0],
-            ..d
-        },
-        ClothDef {
-            damping_per_s: 1.0,
-            ..d
-        },
-        ClothDef {
-            speed_limit: 0.5,
-            ..d
-        },
-        ClothDef {
-            compression_limit: false,
-            ..d
-        },
-        ClothDef {
-            budget: taut::Budget::Certified,
-            ..d
-        },
-        ClothDef {
-            inertia_radius_m: 0.2,
-            ..d
-        },
-        ClothDef {
-            inertia_max: 9.0,
-            ..d
-        },
+        ClothDef { density_kg_m2: 0.3, ..d },
+        ClothDef { gravity_m_s2: [0.0, -9.8, 0.0], ..d },
+        ClothDef { damping_per_s: 1.0, ..d },
+        ClothDef { speed_limit: 0.5, ..d },
+        ClothDef { compression_limit: false, ..d },
+        ClothDef { budget: taut::Budget::Certified, ..d },
+        ClothDef { inertia_radius_m: 0.2, ..d },
+        ClothDef { inertia_max: 9.0, ..d },
         ClothDef { max_pins: 13, ..d },
-        ClothDef {
-            features: Features::NONE,
-            ..d
-        },
+        ClothDef { features: Features::NONE, ..d },
     ];
-    let cases = grids
-        .into_iter()
-        .map(|g| (g, d))
-        .chain(others.into_iter().map(|d| (g, d)));
+    let cases = grids.into_iter().map(|g| (g, d)).chain(others.into_iter().map(|d| (g, d)));
     for (g, d) in cases {
         let mut c = cloth(&g, &d);
         c.set_stiffness_uniform([100.0; 4]).unwrap();
         let before = c.state_hash();
-        assert_eq!(
-            c.restore(&saved).unwrap_err(),
-            Error::Foreign,
-            "{g:?} {d:?}"
-        );
+        assert_eq!(c.restore(&saved).unwrap_err(), Error::Foreign, "{g:?} {d:?}");
         assert_eq!(c.state_hash(), before);
     }
-    let away = ClothDef {
-        origin_m: [1e6, 0.0, 0.0],
-        ..d
-    };
+    let away = ClothDef { origin_m: [1e6, 0.0, 0.0], ..d };
     cloth(&g, &away).restore(&saved).unwrap();
     cloth(&g, &bare()).restore(&saved).unwrap_err();
 }

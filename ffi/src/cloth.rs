@@ -1,7 +1,5 @@
 use crate::environment::Environment;
-use crate::handle::{
-    ClothHandle, GridHandle, TAUT_CLOTH_ALIGN, TAUT_CLOTH_HEADER_BYTES, change, grid,
-};
+use crate::handle::{ClothHandle, GridHandle, TAUT_CLOTH_ALIGN, TAUT_CLOTH_HEADER_BYTES, change, grid};
 use crate::pointer::{Out, array_mut, value};
 use crate::result::{Code, answer};
 use crate::types::{ClothDef, Memory};
@@ -79,19 +77,12 @@ unsafe fn checked(def: *const ClothDef) -> Result<taut_core::ClothDef, Code> {
 /// TAUT_ERROR_STEP_SIZE, TAUT_ERROR_DAMPING, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
 /// Threads: any.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_memory(
-    on: *const GridHandle,
-    def: *const ClothDef,
-    out: *mut Memory,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_memory(on: *const GridHandle, def: *const ClothDef, out: *mut Memory) -> Code {
     answer(|| {
         // SAFETY: the caller lends a grid, a definition and a place for the answer.
         let (grid, def, out) = unsafe { (grid(on)?, checked(def)?, Out::new(out)?) };
         let _environment = Environment::enter();
-        out.set(Memory {
-            size: bytes(taut_core::Cloth::memory(grid, &def)?)?,
-            align: TAUT_CLOTH_ALIGN,
-        });
+        out.set(Memory { size: bytes(taut_core::Cloth::memory(grid, &def)?)?, align: TAUT_CLOTH_ALIGN });
         Ok(())
     })
 }

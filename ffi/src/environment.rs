@@ -29,9 +29,7 @@ mod register {
     pub(super) fn set(value: Register) {
         // SAFETY: `value` is the default or was read from MXCSR, so no reserved bit is set. The assembly counts as reading
         // and writing memory, so no computation on the state of a cloth is moved across it.
-        unsafe {
-            asm!("ldmxcsr [{}]", in(reg) &raw const value, options(nostack, preserves_flags))
-        };
+        unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const value, options(nostack, preserves_flags)) };
     }
 }
 

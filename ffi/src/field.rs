@@ -11,11 +11,7 @@ use crate::types::FieldInfo;
 /// TAUT_ERROR_NEGATIVE.
 /// Threads: any.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_field_info(
-    data: *const core::ffi::c_void,
-    size: usize,
-    out: *mut FieldInfo,
-) -> Code {
+pub unsafe extern "C" fn taut_field_info(data: *const core::ffi::c_void, size: usize, out: *mut FieldInfo) -> Code {
     answer(|| {
         // SAFETY: the caller lends `size` bytes and a place for the answer.
         let (bytes, out) = unsafe { (array(data.cast::<u8>(), size)?, Out::new(out)?) };

@@ -49,10 +49,7 @@ pub unsafe extern "C" fn taut_grid_memory(def: *const GridDef, out: *mut Memory)
     answer(|| {
         // SAFETY: the caller lends a definition and a place for the answer.
         let (_, out) = unsafe { (checked(def)?, Out::new(out)?) };
-        out.set(Memory {
-            size: TAUT_GRID_BYTES,
-            align: TAUT_GRID_ALIGN,
-        });
+        out.set(Memory { size: TAUT_GRID_BYTES, align: TAUT_GRID_ALIGN });
         Ok(())
     })
 }

@@ -45,10 +45,7 @@ const _: () = {
 
 impl GridHandle {
     pub(crate) fn new(grid: Grid) -> GridHandle {
-        GridHandle {
-            magic: GRID_MAGIC,
-            grid,
-        }
+        GridHandle { magic: GRID_MAGIC, grid }
     }
 }
 
@@ -56,10 +53,7 @@ impl ClothHandle {
     /// `at` is the address that it will be written to. The cloth points into its own block, so a copy of the block
     /// elsewhere is no cloth: the address is part of the magic number.
     pub(crate) fn new(cloth: Cloth<'static>, at: usize) -> ClothHandle {
-        ClothHandle {
-            magic: CLOTH_MAGIC ^ at as u64,
-            cloth,
-        }
+        ClothHandle { magic: CLOTH_MAGIC ^ at as u64, cloth }
     }
 }
 
@@ -84,10 +78,7 @@ pub(crate) unsafe fn grid<'a>(handle: *const GridHandle) -> Result<&'a Grid, Cod
 /// `handle` is NULL, misaligned, or good for reading 8 bytes that, if they are the magic number of this address, begin a
 /// cloth made by `taut_cloth_create` whose block nobody changes meanwhile.
 #[inline]
-pub(crate) unsafe fn look(
-    handle: *const ClothHandle,
-    body: impl FnOnce(&Cloth<'static>) -> Result<(), Code>,
-) -> Code {
+pub(crate) unsafe fn look(handle: *const ClothHandle, body: impl FnOnce(&Cloth<'static>) -> Result<(), Code>) -> Code {
     answer(|| {
         // SAFETY: the caller promises what `check` needs.
         unsafe { check(handle) }?;

@@ -15,11 +15,7 @@ const REACH_M: f32 = 1e6;
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[local_m;3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_set_position(
-    cloth: *mut ClothHandle,
-    particle: u32,
-    local_m: *const f32,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_set_position(cloth: *mut ClothHandle, particle: u32, local_m: *const f32) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends three numbers.
     unsafe {
         change(cloth, |cloth| {
@@ -37,11 +33,7 @@ pub unsafe extern "C" fn taut_cloth_set_position(
 /// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m along an axis).
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_set_positions(
-    cloth: *mut ClothHandle,
-    count: u32,
-    local_m: *const f32,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_set_positions(cloth: *mut ClothHandle, count: u32, local_m: *const f32) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends 3 * count numbers. The count is checked before
     // the array is trusted.
     unsafe {
@@ -72,11 +64,7 @@ pub unsafe extern "C" fn taut_cloth_set_positions(
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[v_m_s;3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_set_velocity(
-    cloth: *mut ClothHandle,
-    particle: u32,
-    v_m_s: *const f32,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_set_velocity(cloth: *mut ClothHandle, particle: u32, v_m_s: *const f32) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends three numbers.
     unsafe {
         change(cloth, |cloth| {
@@ -93,11 +81,7 @@ pub unsafe extern "C" fn taut_cloth_set_velocity(
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[force_n;3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_add_force(
-    cloth: *mut ClothHandle,
-    particle: u32,
-    force_n: *const f32,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_add_force(cloth: *mut ClothHandle, particle: u32, force_n: *const f32) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends three numbers.
     unsafe {
         change(cloth, |cloth| {

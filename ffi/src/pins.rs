@@ -23,11 +23,7 @@ pub unsafe extern "C" fn taut_cloth_pin(cloth: *mut ClothHandle, particle: u32) 
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[world_m;3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_pin_move(
-    cloth: *mut ClothHandle,
-    particle: u32,
-    world_m: *const f64,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_pin_move(cloth: *mut ClothHandle, particle: u32, world_m: *const f64) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends three numbers.
     unsafe {
         change(cloth, |cloth| {

@@ -12,9 +12,7 @@ fn check<T>(pointer: *const T, count: usize) -> Result<(), Code> {
     if !pointer.is_aligned() {
         return Err(Code::TAUT_ERROR_MISALIGNED);
     }
-    let bytes = count
-        .checked_mul(size_of::<T>())
-        .filter(|b| *b <= isize::MAX as usize);
+    let bytes = count.checked_mul(size_of::<T>()).filter(|b| *b <= isize::MAX as usize);
     if bytes.and_then(|b| pointer.addr().checked_add(b)).is_none() {
         return Err(Code::TAUT_ERROR_OUT_OF_RANGE);
     }
@@ -105,18 +103,11 @@ impl Vertices {
         if stride < size_of::<T>() {
             return Err(Code::TAUT_ERROR_SHAPE);
         }
-        let needed = count
-            .saturating_sub(1)
-            .checked_mul(stride)
-            .and_then(|b| b.checked_add(size_of::<T>()));
+        let needed = count.saturating_sub(1).checked_mul(stride).and_then(|b| b.checked_add(size_of::<T>()));
         if needed.is_none_or(|n| n > size) {
             return Err(Code::TAUT_ERROR_BLOCK_TOO_SMALL);
         }
-        Ok(Vertices {
-            start: pointer.cast(),
-            stride,
-            count,
-        })
+        Ok(Vertices { start: pointer.cast(), stride, count })
     }
 
     /// Writes `value(i)` for every place i.
@@ -136,20 +127,11 @@ mod tests {
     fn bad_pointers_are_answered_without_a_look() {
         // SAFETY: none of these is good, so none may be looked at.
         unsafe {
-            assert_eq!(
-                value::<u32>(ptr::null()).unwrap_err(),
-                Code::TAUT_ERROR_NULL_POINTER
-            );
-            assert_eq!(
-                value::<u32>(ptr::without_provenance(6)).unwrap_err(),
-                Code::TAUT_ERROR_MISALIGNED
-            );
+            assert_eq!(value::<u32>(ptr::null()).unwrap_err(), Code::TAUT_ERROR_NULL_POINTER);
+            assert_eq!(value::<u32>(ptr::without_provenance(6)).unwrap_err(), Code::TAUT_ERROR_MISALIGNED);
             let end = ptr::without_provenance::<u32>(usize::MAX - 7);
             assert_eq!(array(end, 2).unwrap_err(), Code::TAUT_ERROR_OUT_OF_RANGE);
-            assert_eq!(
-                array::<u32>(ptr::dangling(), usize::MAX / 2).unwrap_err(),
-                Code::TAUT_ERROR_OUT_OF_RANGE
-            );
+            assert_eq!(array::<u32>(ptr::dangling(), usize::MAX / 2).unwrap_err(), Code::TAUT_ERROR_OUT_OF_RANGE);
             assert!(Out::<u64>::optional(ptr::null_mut()).is_ok());
             assert!(Out::<u64>::new(ptr::null_mut()).is_err());
         }
@@ -160,17 +142,10 @@ mod tests {
         let mut buffer = [0xffu8; 40];
         let at = buffer.as_mut_ptr().wrapping_add(1).cast();
         // SAFETY: 39 bytes from `at` on are ours.
-        let make =
-            |size, stride, count| unsafe { Vertices::new::<[f32; 3]>(at, size, stride, count) };
+        let make = |size, stride, count| unsafe { Vertices::new::<[f32; 3]>(at, size, stride, count) };
         assert_eq!(make(39, 11, 1).err(), Some(Code::TAUT_ERROR_SHAPE));
-        assert_eq!(
-            make(39, 14, 3).err(),
-            Some(Code::TAUT_ERROR_BLOCK_TOO_SMALL)
-        );
-        assert_eq!(
-            make(39, usize::MAX, 3).err(),
-            Some(Code::TAUT_ERROR_BLOCK_TOO_SMALL)
-        );
+        assert_eq!(make(39, 14, 3).err(), Some(Code::TAUT_ERROR_BLOCK_TOO_SMALL));
+        assert_eq!(make(39, usize::MAX, 3).err(), Some(Code::TAUT_ERROR_BLOCK_TOO_SMALL));
         make(39, 13, 3).unwrap().fill(|_| [0.0f32; 3]);
         for (i, b) in buffer.into_iter().enumerate() {
             let untouched = i == 0 || i == 13 || i == 26 || i > 38;

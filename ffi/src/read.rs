@@ -12,10 +12,7 @@ use crate::types::{PositionView, Strain};
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: reads the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_positions(
-    cloth: *const ClothHandle,
-    out: *mut PositionView,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_positions(cloth: *const ClothHandle, out: *mut PositionView) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and a place for the answer.
     unsafe {
         look(cloth, |cloth| {
@@ -49,11 +46,7 @@ pub unsafe extern "C" fn taut_cloth_copy_positions_f64(
     stride: usize,
 ) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and `out_size` bytes.
-    unsafe {
-        copy(cloth, out, out_size, stride, |cloth, i| {
-            Ok(cloth.world_position(i)?.into())
-        })
-    }
+    unsafe { copy(cloth, out, out_size, stride, |cloth, i| Ok(cloth.world_position(i)?.into())) }
 }
 
 /// Copies the positions as seen from base_m, a point of the world in m (the camera, or 0, 0, 0), as three floats per
@@ -82,9 +75,7 @@ pub unsafe extern "C" fn taut_cloth_copy_positions_f32(
         if !base_m.iter().all(|x| x.is_finite()) {
             return Code::TAUT_ERROR_NOT_FINITE;
         }
-        copy(cloth, out, out_size, stride, |cloth, i| {
-            Ok((cloth.world_position(i)? - base_m).cast::<f32>().into())
-        })
+        copy(cloth, out, out_size, stride, |cloth, i| Ok((cloth.world_position(i)? - base_m).cast::<f32>().into()))
     }
 }
 
@@ -102,11 +93,7 @@ pub unsafe extern "C" fn taut_cloth_copy_velocities_f32(
     stride: usize,
 ) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and `out_size` bytes.
-    unsafe {
-        copy::<f32>(cloth, out, out_size, stride, |cloth, i| {
-            Ok(cloth.velocity(i)?.into())
-        })
-    }
+    unsafe { copy::<f32>(cloth, out, out_size, stride, |cloth, i| Ok(cloth.velocity(i)?.into())) }
 }
 
 /// Copies three numbers of each particle.
@@ -123,8 +110,7 @@ unsafe fn copy<T: Copy + Default>(
     // SAFETY: promised by the caller.
     unsafe {
         look(cloth, |cloth| {
-            let vertices =
-                Vertices::new::<[T; 3]>(out, out_size, stride, cloth.grid().particles())?;
+            let vertices = Vertices::new::<[T; 3]>(out, out_size, stride, cloth.grid().particles())?;
             // the index is always that of a particle, so the zeros are never written
             vertices.fill(|i| vector(cloth, i).unwrap_or([T::default(); 3]));
             Ok(())
@@ -143,10 +129,7 @@ pub unsafe extern "C" fn taut_cloth_strain(cloth: *const ClothHandle, out: *mut 
         look(cloth, |cloth| {
             let out = Out::new(out)?;
             let s = cloth.strain();
-            out.set(Strain {
-                largest: s.largest,
-                mean: s.mean,
-            });
+            out.set(Strain { largest: s.largest, mean: s.mean });
             Ok(())
         })
     }
@@ -157,10 +140,7 @@ pub unsafe extern "C" fn taut_cloth_strain(cloth: *const ClothHandle, out: *mut 
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: reads the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_kinetic_energy(
-    cloth: *const ClothHandle,
-    out_j: *mut f64,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_kinetic_energy(cloth: *const ClothHandle, out_j: *mut f64) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and a place for the answer.
     unsafe {
         look(cloth, |cloth| {

@@ -114,9 +114,7 @@ const OWN: &[Row] = &[
     (
         TAUT_ERROR_BAD_HANDLE,
         c"TAUT_ERROR_BAD_HANDLE",
-        message!(
-            "the handle was not made by its create function or its block was overwritten or moved"
-        ),
+        message!("the handle was not made by its create function or its block was overwritten or moved"),
     ),
 ];
 
@@ -175,7 +173,5 @@ pub extern "C" fn taut_result_name(result: i32) -> *const c_char {
 /// Threads: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn taut_result_message(result: i32) -> *const c_char {
-    row(result).map_or(c"this number is no result of taut".as_ptr(), |r| {
-        r.2.as_ptr().cast()
-    })
+    row(result).map_or(c"this number is no result of taut".as_ptr(), |r| r.2.as_ptr().cast())
 }

@@ -9,10 +9,7 @@ use crate::result::Code;
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: reads the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_snapshot_size(
-    cloth: *const ClothHandle,
-    out: *mut usize,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_snapshot_size(cloth: *const ClothHandle, out: *mut usize) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and a place for the answer.
     unsafe {
         look(cloth, |cloth| {
@@ -27,10 +24,7 @@ pub unsafe extern "C" fn taut_cloth_snapshot_size(
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: reads the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_snapshot_size_max(
-    cloth: *const ClothHandle,
-    out: *mut usize,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_snapshot_size_max(cloth: *const ClothHandle, out: *mut usize) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and a place for the answer.
     unsafe {
         look(cloth, |cloth| {
@@ -73,17 +67,9 @@ pub unsafe extern "C" fn taut_cloth_snapshot(
 /// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NO_SUCH_PARTICLE. Then the cloth is as it was.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_restore(
-    cloth: *mut ClothHandle,
-    data: *const c_void,
-    size: usize,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_restore(cloth: *mut ClothHandle, data: *const c_void, size: usize) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends `size` bytes.
-    unsafe {
-        change(cloth, |cloth| {
-            Ok(cloth.restore(array(data.cast::<u8>(), size)?)?)
-        })
-    }
+    unsafe { change(cloth, |cloth| Ok(cloth.restore(array(data.cast::<u8>(), size)?)?)) }
 }
 
 /// 64-bit hash of the state: two machines that play in lockstep compare it.

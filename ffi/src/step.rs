@@ -25,11 +25,7 @@ pub unsafe extern "C" fn taut_cloth_step(cloth: *mut ClothHandle, out_flags: *mu
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_step_many(
-    cloth: *mut ClothHandle,
-    count: u32,
-    out_flags: *mut u32,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_step_many(cloth: *mut ClothHandle, count: u32, out_flags: *mut u32) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and a place for the flags or NULL.
     unsafe {
         change(cloth, |cloth| {

@@ -85,10 +85,7 @@ pub unsafe extern "C" fn taut_cloth_load_stiffness(
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_budget(
-    cloth: *mut ClothHandle,
-    out: *mut BudgetReport,
-) -> Code {
+pub unsafe extern "C" fn taut_cloth_budget(cloth: *mut ClothHandle, out: *mut BudgetReport) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and a place for the answer.
     unsafe {
         change(cloth, |cloth| {

@@ -44,25 +44,14 @@ pub extern "C" fn taut_version() -> u32 {
 /// Threads: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn taut_check_version(version_id: u32) -> Code {
-    answer(|| {
-        if fits(taut_version(), version_id) {
-            Ok(())
-        } else {
-            Err(Code::TAUT_ERROR_VERSION_MISMATCH)
-        }
-    })
+    answer(|| if fits(taut_version(), version_id) { Ok(()) } else { Err(Code::TAUT_ERROR_VERSION_MISMATCH) })
 }
 
 /// Whether a library of the version `have` serves a program compiled for `want`.
 fn fits(have: u32, want: u32) -> bool {
     let parts = |v: u32| (v >> 24, v >> 16 & 0xff);
     let ((have_major, have_minor), (want_major, want_minor)) = (parts(have), parts(want));
-    have_major == want_major
-        && if have_major == 0 {
-            have_minor == want_minor
-        } else {
-            have_minor >= want_minor
-        }
+    have_major == want_major && if have_major == 0 { have_minor == want_minor } else { have_minor >= want_minor }
 }
 
 #[cfg(test)]

@@ -6,11 +6,7 @@ use std::path::Path;
 fn generated() -> String {
     let crate_dir = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(crate_dir.join("cbindgen.toml")).unwrap();
-    let bindings = cbindgen::Builder::new()
-        .with_crate(crate_dir)
-        .with_config(config)
-        .generate()
-        .unwrap();
+    let bindings = cbindgen::Builder::new().with_crate(crate_dir).with_config(config).generate().unwrap();
     let mut generated = Vec::new();
     bindings.write(&mut generated);
     String::from_utf8(generated).unwrap()
@@ -26,16 +22,8 @@ fn the_committed_header_is_the_generated_one() {
         std::fs::write(&committed, &generated).unwrap();
     }
     let found = std::fs::read_to_string(&committed).unwrap_or_default();
-    if let Some((i, (is, should))) = found
-        .lines()
-        .zip(generated.lines())
-        .enumerate()
-        .find(|(_, (a, b))| a != b)
-    {
-        panic!(
-            "include/taut.h, line {}: is\n  {is}\nshould be\n  {should}\nTAUT_BLESS=1 rewrites it",
-            i + 1
-        );
+    if let Some((i, (is, should))) = found.lines().zip(generated.lines()).enumerate().find(|(_, (a, b))| a != b) {
+        panic!("include/taut.h, line {}: is\n  {is}\nshould be\n  {should}\nTAUT_BLESS=1 rewrites it", i + 1);
     }
     assert_eq!(found, generated, "include/taut.h; TAUT_BLESS=1 rewrites it");
 }

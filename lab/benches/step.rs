@@ -11,18 +11,10 @@ const SIDES: [u32; 3] = [32, 64, 128];
 
 /// Hands a swinging cloth to `work`.
 fn with_cloth(side: u32, families: Families, def: &ClothDef, work: impl FnOnce(&mut Cloth<'_>)) {
-    let grid = Grid::new(&GridDef {
-        rows: side,
-        columns: side,
-        families,
-        ..GridDef::default()
-    })
-    .expect("a valid grid");
+    let grid = Grid::new(&GridDef { rows: side, columns: side, families, ..GridDef::default() }).expect("a valid grid");
     let mut block = vec![0.0; Cloth::memory(&grid, def).expect("a valid definition")];
     let mut cloth = Cloth::create(&grid, def, &mut block).expect("the block is large enough");
-    cloth
-        .set_stiffness_uniform([5000.0, 5000.0, 1500.0, 100.0])
-        .expect("a stiffness");
+    cloth.set_stiffness_uniform([5000.0, 5000.0, 1500.0, 100.0]).expect("a stiffness");
     cloth.pin(0).expect("a pin");
     cloth.pin(side as usize - 1).expect("a pin");
     for _ in 0..10 {
@@ -33,14 +25,8 @@ fn with_cloth(side: u32, families: Families, def: &ClothDef, work: impl FnOnce(&
 
 fn frames(c: &mut Criterion) {
     let plain = ClothDef::default();
-    let inertia = ClothDef {
-        inertia_radius_m: 0.3,
-        ..plain
-    };
-    let unlimited = ClothDef {
-        speed_limit: 0.0,
-        ..plain
-    };
+    let inertia = ClothDef { inertia_radius_m: 0.3, ..plain };
+    let unlimited = ClothDef { speed_limit: 0.0, ..plain };
     let settings = [
         ("uniform", Families::ALL, plain),
         ("inertia", Families::ALL, inertia),
@@ -66,21 +52,14 @@ fn frames(c: &mut Criterion) {
 fn pins(c: &mut Criterion) {
     let mut group = c.benchmark_group("change_of_pins");
     for (name, radius) in [("uniform", 0.0), ("inertia", 0.3)] {
-        let def = ClothDef {
-            inertia_radius_m: radius,
-            ..ClothDef::default()
-        };
+        let def = ClothDef { inertia_radius_m: radius, ..ClothDef::default() };
         for side in SIDES {
             group.throughput(Throughput::Elements(u64::from(side * side)));
             group.bench_function(BenchmarkId::new(name, side), |b| {
                 with_cloth(side, Families::ALL, &def, |cloth| {
                     let middle = (side * side / 2 + side / 2) as usize;
                     b.iter(|| {
-                        let change = if cloth.pin_count() == 2 {
-                            cloth.pin(middle)
-                        } else {
-                            cloth.unpin(middle)
-                        };
+                        let change = if cloth.pin_count() == 2 { cloth.pin(middle) } else { cloth.unpin(middle) };
                         black_box((change, cloth.budget()))
                     });
                 });

@@ -20,22 +20,11 @@ fn hang(pins: &[usize], strength: f32, shear: f32, bend: f32) -> Vec<[f32; 3]> {
             let (row, column) = ((i / SIDE) as f32, (i % SIDE) as f32);
             // A slight wave, so that folds have a side to fall to.
             let wave = 0.02 * (column * 0.55).sin() + 0.012 * (row * 0.4 + column * 0.2).cos();
-            [
-                column * rest - 0.5,
-                -row * rest * 0.3,
-                row * rest * 0.95 + wave - 0.2,
-            ]
+            [column * rest - 0.5, -row * rest * 0.3, row * rest * 0.95 + wave - 0.2]
         })
         .collect();
     let mut velocity = vec![[0.0f32; 3]; SIDE * SIDE];
-    let families = [
-        (0, 1, 1.0),
-        (1, 0, 1.0),
-        (1, 1, shear),
-        (1, -1, shear),
-        (0, 2, bend),
-        (2, 0, bend),
-    ];
+    let families = [(0, 1, 1.0), (1, 0, 1.0), (1, 1, shear), (1, -1, shear), (0, 2, bend), (2, 0, bend)];
     for _ in 0..FRAMES * 64 {
         let mut force = vec![[0.0f32, -9.81, 0.0]; SIDE * SIDE];
         for (dr, dc, share) in families {
@@ -81,35 +70,20 @@ fn sheet(scene: &str) -> Result<Sheet, PictureError> {
         ("analytic K + inertia", 0.200, 0.30, 0.020),
         ("generated K", 0.400, 0.20, 0.003),
     ];
-    let pins: &[usize] = if scene == "hang1" {
-        &[0]
-    } else {
-        &[0, SIDE - 1]
-    };
+    let pins: &[usize] = if scene == "hang1" { &[0] } else { &[0, SIDE - 1] };
     let mut sheet = Sheet::new("picture example")
         .subtitle(format!("{scene}, {SIDE} x {SIDE}, 1 m x 1 m, after 5 s"))
         .outline_of(0)
         .footer("Stand-in data from the picture example: the springs are chosen by hand, no fabric was measured.");
     for (name, strength, shear, bend) in settings {
-        let grid = Grid::new(
-            &hang(pins, strength * cap, shear, bend),
-            SIDE,
-            SIDE,
-            1.0,
-            1.0,
-        )?
-        .with_pins(pins)?;
+        let grid = Grid::new(&hang(pins, strength * cap, shear, bend), SIDE, SIDE, 1.0, 1.0)?.with_pins(pins)?;
         let mut strains: Vec<f32> = (0..SIDE * (SIDE - 1))
             .flat_map(|i| {
-                [
-                    grid.strain_u(i / (SIDE - 1), i % (SIDE - 1)),
-                    grid.strain_v(i % (SIDE - 1), i / (SIDE - 1)),
-                ]
+                [grid.strain_u(i / (SIDE - 1), i % (SIDE - 1)), grid.strain_v(i % (SIDE - 1), i / (SIDE - 1))]
             })
             .collect();
         strains.sort_by(f32::total_cmp);
-        let percent =
-            |quantile: f32| strains[((strains.len() - 1) as f32 * quantile) as usize] * 100.0;
+        let percent = |quantile: f32| strains[((strains.len() - 1) as f32 * quantile) as usize] * 100.0;
         let line = format!("max {:.1} %  p99 {:.1} %", percent(1.0), percent(0.99));
         sheet = sheet.panel(Panel::new(name, grid).line(line));
     }
@@ -117,12 +91,8 @@ fn sheet(scene: &str) -> Result<Sheet, PictureError> {
 }
 
 fn main() -> ExitCode {
-    let path = std::env::args()
-        .nth(1)
-        .unwrap_or_else(|| "sheet.png".to_owned());
-    let scene = std::env::args()
-        .nth(2)
-        .unwrap_or_else(|| "hang2".to_owned());
+    let path = std::env::args().nth(1).unwrap_or_else(|| "sheet.png".to_owned());
+    let scene = std::env::args().nth(2).unwrap_or_else(|| "hang2".to_owned());
     match sheet(&scene).and_then(|sheet| sheet.save(Path::new(&path))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

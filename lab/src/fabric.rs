@@ -98,8 +98,8 @@ pub const MODIFIERS: [(&str, f32, f32, f32); 22] = [
 
 /// Words that change nothing but how it looks.
 pub const COLOURS: [&str; 16] = [
-    "blue", "black", "white", "red", "green", "grey", "navy", "brown", "pink", "ivory", "yellow", "dark", "pale", "striped",
-    "plain", "printed",
+    "blue", "black", "white", "red", "green", "grey", "navy", "brown", "pink", "ivory", "yellow", "dark", "pale",
+    "striped", "plain", "printed",
 ];
 
 /// Bend stiffness in N/m: Provot's bend springs resist stretch too, so they are kept small.

@@ -33,9 +33,7 @@ impl Kind {
     }
 
     pub fn of_code(code: i32) -> Option<Kind> {
-        [Kind::F32, Kind::F16, Kind::I64]
-            .into_iter()
-            .find(|k| k.code() == code)
+        [Kind::F32, Kind::F16, Kind::I64].into_iter().find(|k| k.code() == code)
     }
 
     pub fn bytes(self) -> usize {
@@ -63,13 +61,7 @@ pub(crate) struct Value {
 impl Value {
     /// A tensor that is computed.
     pub fn computed(kind: Kind, dims: Vec<usize>) -> Value {
-        Value {
-            kind,
-            dims,
-            sources: 0,
-            stored: false,
-            list: Vec::new(),
-        }
+        Value { kind, dims, sources: 0, stored: false, list: Vec::new() }
     }
 }
 
@@ -94,9 +86,7 @@ impl Call<'_> {
     }
 
     pub fn bad(&self, reason: &str) -> Error {
-        Error::Graph {
-            reason: format!("{} {}: {reason}", self.node.op_type, self.output()),
-        }
+        Error::Graph { reason: format!("{} {}: {reason}", self.node.op_type, self.output()) }
     }
 
     /// Checks the number of inputs and the names of the attributes.
@@ -106,8 +96,7 @@ impl Call<'_> {
         }
         let given = &self.node.attribute;
         for (i, a) in given.iter().enumerate() {
-            if !attributes.contains(&a.name.as_str()) || given[..i].iter().any(|b| b.name == a.name)
-            {
+            if !attributes.contains(&a.name.as_str()) || given[..i].iter().any(|b| b.name == a.name) {
                 return Err(self.bad(&format!("its attribute {} does not belong here", a.name)));
             }
         }
@@ -121,65 +110,39 @@ impl Call<'_> {
 
     pub fn float(&self, i: usize) -> Result<&Value, Error> {
         let value = self.input(i)?;
-        if value.kind == Kind::F32 {
-            Ok(value)
-        } else {
-            Err(self.bad(&format!("its input {i} is not float32")))
-        }
+        if value.kind == Kind::F32 { Ok(value) } else { Err(self.bad(&format!("its input {i} is not float32"))) }
     }
 
     /// A float32 tensor of the file.
     pub fn weight(&self, i: usize) -> Result<&Value, Error> {
         let value = self.float(i)?;
-        if value.stored {
-            Ok(value)
-        } else {
-            Err(self.bad(&format!("its input {i} is not a weight of the file")))
-        }
+        if value.stored { Ok(value) } else { Err(self.bad(&format!("its input {i} is not a weight of the file"))) }
     }
 
     /// A short list of whole numbers of the file.
     pub fn integers(&self, i: usize) -> Result<Vec<i64>, Error> {
         let value = self.input(i)?;
-        if value.kind != Kind::I64
-            || !value.stored
-            || value.dims.len() != 1
-            || value.list.len() != value.dims[0]
-        {
-            return Err(self.bad(&format!(
-                "its input {i} is not a short stored list of int64"
-            )));
+        if value.kind != Kind::I64 || !value.stored || value.dims.len() != 1 || value.list.len() != value.dims[0] {
+            return Err(self.bad(&format!("its input {i} is not a short stored list of int64")));
         }
         Ok(value.list.iter().map(|&x| x as i64).collect())
     }
 
     pub fn expect(&self, i: usize, found: &[usize], expected: &[usize]) -> Result<(), Error> {
-        if found == expected {
-            Ok(())
-        } else {
-            Err(self.shape(i, &format!("{expected:?}")))
-        }
+        if found == expected { Ok(()) } else { Err(self.shape(i, &format!("{expected:?}"))) }
     }
 
     pub fn shape(&self, i: usize, expected: &str) -> Error {
         Error::TensorShape {
             tensor: self.node.input.get(i).cloned().unwrap_or_default(),
             expected: format!("{expected} ({} {})", self.node.op_type, self.output()),
-            found: self
-                .inputs
-                .get(i)
-                .copied()
-                .flatten()
-                .map(|v| v.dims.clone())
-                .unwrap_or_default(),
+            found: self.inputs.get(i).copied().flatten().map(|v| v.dims.clone()).unwrap_or_default(),
         }
     }
 
     pub fn attribute(&self, name: &str, code: i32) -> Result<Option<&AttributeProto>, Error> {
         match self.node.attribute.iter().find(|a| a.name == name) {
-            Some(a) if a.r#type != code => {
-                Err(self.bad(&format!("its attribute {name} has a wrong type")))
-            }
+            Some(a) if a.r#type != code => Err(self.bad(&format!("its attribute {name} has a wrong type"))),
             found => Ok(found),
         }
     }
@@ -190,17 +153,11 @@ impl Call<'_> {
 
     pub fn number(&self, name: &str, default: f32) -> Result<f32, Error> {
         let value = self.attribute(name, 1)?.map_or(default, |a| a.f);
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(self.bad(&format!("its attribute {name} is not finite")))
-        }
+        if value.is_finite() { Ok(value) } else { Err(self.bad(&format!("its attribute {name} is not finite"))) }
     }
 
     pub fn text(&self, name: &str, default: &str, allowed: &[&str]) -> Result<(), Error> {
-        let value = self
-            .attribute(name, 3)?
-            .map_or(default.as_bytes(), |a| a.s.as_slice());
+        let value = self.attribute(name, 3)?.map_or(default.as_bytes(), |a| a.s.as_slice());
         if allowed.iter().any(|a| a.as_bytes() == value) {
             return Ok(());
         }
@@ -218,37 +175,27 @@ impl Call<'_> {
             return Ok(default);
         };
         let list: Option<Vec<usize>> = a.ints.iter().map(|&i| usize::try_from(i).ok()).collect();
-        list.and_then(|l| <[usize; N]>::try_from(l).ok())
-            .filter(|l| l.iter().all(|i| bounds.contains(i)))
-            .ok_or_else(|| {
+        list.and_then(|l| <[usize; N]>::try_from(l).ok()).filter(|l| l.iter().all(|i| bounds.contains(i))).ok_or_else(
+            || {
                 self.bad(&format!(
                     "its attribute {name} is not {N} numbers within {} to {}",
                     bounds.start(),
                     bounds.end()
                 ))
-            })
+            },
+        )
     }
 
     /// An axis of a tensor of `rank` axes; negative ones count from the end.
     pub fn axis(&self, axis: i64, rank: usize) -> Result<usize, Error> {
-        let from_end = if axis < 0 {
-            axis.checked_add(rank as i64)
-        } else {
-            Some(axis)
-        };
-        let axis = from_end
-            .and_then(|a| usize::try_from(a).ok())
-            .filter(|&a| a < rank);
+        let from_end = if axis < 0 { axis.checked_add(rank as i64) } else { Some(axis) };
+        let axis = from_end.and_then(|a| usize::try_from(a).ok()).filter(|&a| a < rank);
         axis.ok_or_else(|| self.bad("an axis is out of range"))
     }
 
     /// The axes of input 1, distinct and sorted.
     pub fn axes(&self, rank: usize) -> Result<Vec<usize>, Error> {
-        let mut axes = self
-            .integers(1)?
-            .into_iter()
-            .map(|a| self.axis(a, rank))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut axes = self.integers(1)?.into_iter().map(|a| self.axis(a, rank)).collect::<Result<Vec<_>, _>>()?;
         let given = axes.len();
         axes.sort_unstable();
         axes.dedup();
@@ -260,10 +207,6 @@ impl Call<'_> {
 
     pub fn work(&self, factors: &[usize]) -> Result<(), Error> {
         let work = factors.iter().try_fold(1usize, |n, &f| n.checked_mul(f));
-        if work.is_some_and(|w| w <= MAX_WORK) {
-            Ok(())
-        } else {
-            Err(self.bad("it asks for too much work"))
-        }
+        if work.is_some_and(|w| w <= MAX_WORK) { Ok(()) } else { Err(self.bad("it asks for too much work")) }
     }
 }

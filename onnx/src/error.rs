@@ -130,10 +130,9 @@ impl fmt::Display for Error {
             Error::TooLarge { limit } => {
                 write!(f, "the generator file is larger than {limit} bytes")
             }
-            Error::Truncated { offset, missing } => write!(
-                f,
-                "the generator file is truncated: the field at byte {offset} lacks {missing} bytes"
-            ),
+            Error::Truncated { offset, missing } => {
+                write!(f, "the generator file is truncated: the field at byte {offset} lacks {missing} bytes")
+            }
             Error::NotOnnx { reason } => write!(f, "not an ONNX file: {}", one_line(reason)),
             Error::MetadataMissing { key } => {
                 write!(f, "not a generator file: the metadata has no {key}")
@@ -148,29 +147,14 @@ impl fmt::Display for Error {
                 one_line(node)
             ),
             Error::Graph { reason } => write!(f, "bad generator graph: {}", one_line(reason)),
-            Error::TensorShape {
-                tensor,
-                expected,
-                found,
-            } => write!(
-                f,
-                "tensor {} has the shape {found:?}, expected {}",
-                one_line(tensor),
-                one_line(expected)
-            ),
+            Error::TensorShape { tensor, expected, found } => {
+                write!(f, "tensor {} has the shape {found:?}, expected {}", one_line(tensor), one_line(expected))
+            }
             Error::Weights { tensor } => {
-                write!(
-                    f,
-                    "tensor {} holds a weight that is not finite",
-                    one_line(tensor)
-                )
+                write!(f, "tensor {} holds a weight that is not finite", one_line(tensor))
             }
             Error::Inference { stage, reason } => {
-                write!(
-                    f,
-                    "the inference engine failed to {stage} the graph: {}",
-                    one_line(reason)
-                )
+                write!(f, "the inference engine failed to {stage} the graph: {}", one_line(reason))
             }
             Error::Output { output, value } => write!(
                 f,
@@ -187,23 +171,15 @@ impl fmt::Display for Error {
                 write!(f, "the description has {bytes} bytes, the limit is {limit}")
             }
             Error::Baked(reason) => write!(f, "the field cannot be baked: {reason}"),
-            Error::GridSize { rows, columns } => write!(
-                f,
-                "a grid of {rows} x {columns} particles: each side must have 2 to 4096"
-            ),
-            Error::SideLength { width_m, height_m } => write!(
-                f,
-                "sides of {width_m} m and {height_m} m: each must be above 0 and at most 10000 m"
-            ),
-            Error::Pin {
-                row,
-                column,
-                rows,
-                columns,
-            } => write!(
-                f,
-                "the pin at row {row}, column {column} is not on the grid of {rows} x {columns}"
-            ),
+            Error::GridSize { rows, columns } => {
+                write!(f, "a grid of {rows} x {columns} particles: each side must have 2 to 4096")
+            }
+            Error::SideLength { width_m, height_m } => {
+                write!(f, "sides of {width_m} m and {height_m} m: each must be above 0 and at most 10000 m")
+            }
+            Error::Pin { row, column, rows, columns } => {
+                write!(f, "the pin at row {row}, column {column} is not on the grid of {rows} x {columns}")
+            }
         }
     }
 }
@@ -215,11 +191,7 @@ fn list(f: &mut fmt::Formatter<'_>, words: &[String]) -> fmt::Result {
     const SHOWN: usize = 8;
     for (i, word) in words.iter().take(SHOWN).enumerate() {
         let separator = if i == 0 { "" } else { ", " };
-        write!(
-            f,
-            "{separator}{}",
-            word.chars().take(40).collect::<String>()
-        )?;
+        write!(f, "{separator}{}", word.chars().take(40).collect::<String>())?;
     }
     match words.len().checked_sub(SHOWN) {
         Some(more) if more > 0 => write!(f, " and {more} more"),
@@ -250,37 +222,21 @@ mod tests {
 
     #[test]
     fn texts_are_one_short_line() {
-        let unknown = (0..100)
-            .map(|i| format!("{}{i}", "x".repeat(1000)))
-            .collect();
+        let unknown = (0..100).map(|i| format!("{}{i}", "x".repeat(1000))).collect();
         let errors = [
-            Error::NotOnnx {
-                reason: "a\nb\u{1b}[31m\r".repeat(1000),
-            },
+            Error::NotOnnx { reason: "a\nb\u{1b}[31m\r".repeat(1000) },
             Error::NoKnownWord { unknown },
-            Error::Io {
-                path: "\n".into(),
-                reason: "no\nsuch".into(),
-            },
+            Error::Io { path: "\n".into(), reason: "no\nsuch".into() },
         ];
         for error in errors {
             let text = error.to_string();
-            assert!(
-                text.len() < 1200 && !text.chars().any(char::is_control),
-                "{text}"
-            );
+            assert!(text.len() < 1200 && !text.chars().any(char::is_control), "{text}");
         }
     }
 
     #[test]
     fn unknown_words_are_named() {
-        let text = Error::NoKnownWord {
-            unknown: vec!["foo".into(), "bar".into()],
-        }
-        .to_string();
-        assert_eq!(
-            text,
-            "the generator knows no word of the description: foo, bar"
-        );
+        let text = Error::NoKnownWord { unknown: vec!["foo".into(), "bar".into()] }.to_string();
+        assert_eq!(text, "the generator knows no word of the description: foo, bar");
     }
 }

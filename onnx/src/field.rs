@@ -12,10 +12,7 @@ impl Range {
     /// exp(lerp(ln low, ln high, (t + 1) / 2)) for t in [-1, 1]. In f64 by libm, so that equal
     /// inputs give equal bits on every machine; never outside the range.
     pub(crate) fn decode(self, t: f32) -> f32 {
-        let (low, high) = (
-            libm::log(f64::from(self.low)),
-            libm::log(f64::from(self.high)),
-        );
+        let (low, high) = (libm::log(f64::from(self.low)), libm::log(f64::from(self.high)));
         let share = (f64::from(t) + 1.0) * 0.5;
         let value = libm::exp(low + (high - low) * share) as f32;
         value.clamp(self.low, self.high)
@@ -32,21 +29,14 @@ pub(crate) fn decode(tanh: &ArrayView3<'_, f32>, ranges: &[Range; 4]) -> Array3<
 /// the cloth itself ([`taut::field::bilinear`]): linear fields stay linear, values stay within those
 /// around them but for rounding, and the source's own size gives the source back bit by bit.
 /// Errors: [`Error::GridSize`] unless all sides have 2 to 4096 particles.
-pub fn resample(
-    field: &ArrayView3<'_, f32>,
-    rows: usize,
-    columns: usize,
-) -> Result<Array3<f32>, Error> {
+pub fn resample(field: &ArrayView3<'_, f32>, rows: usize, columns: usize) -> Result<Array3<f32>, Error> {
     let (channels, from_rows, from_columns) = field.dim();
     check_grid(from_rows, from_columns)?;
     check_grid(rows, columns)?;
-    Ok(Array3::from_shape_fn(
-        (channels, rows, columns),
-        |(c, i, j)| {
-            let value = |row, column| field[[c, row, column]];
-            bilinear((from_rows, from_columns), value, (i, j), (rows, columns))
-        },
-    ))
+    Ok(Array3::from_shape_fn((channels, rows, columns), |(c, i, j)| {
+        let value = |row, column| field[[c, row, column]];
+        bilinear((from_rows, from_columns), value, (i, j), (rows, columns))
+    }))
 }
 
 /// Caps the bend channel at [`BEND_SHARE`] of the mean of warp and weft, at each particle: a free one
@@ -74,10 +64,7 @@ mod tests {
 
     #[test]
     fn decodes_the_ends_and_the_geometric_middle() {
-        let range = Range {
-            low: 5.0,
-            high: 20_000.0,
-        };
+        let range = Range { low: 5.0, high: 20_000.0 };
         assert_eq!((range.decode(-1.0), range.decode(1.0)), (5.0, 20_000.0));
         assert!((range.decode(0.0) / 100_000f32.sqrt() - 1.0).abs() < 1e-6);
         let mut last = 0.0;
@@ -106,9 +93,7 @@ mod tests {
     fn linear_fields_stay_linear_and_corners_stay() {
         let plane = |x: f64, y: f64| (100.0 + 30.0 * x - 7.0 * y) as f32;
         let of = |m: usize, n: usize| {
-            Array3::from_shape_fn((4, m, n), |(_, i, j)| {
-                plane(i as f64 / (m - 1) as f64, j as f64 / (n - 1) as f64)
-            })
+            Array3::from_shape_fn((4, m, n), |(_, i, j)| plane(i as f64 / (m - 1) as f64, j as f64 / (n - 1) as f64))
         };
         for (m, n) in [(2, 2), (2, 4096), (3, 17), (64, 48), (129, 31), (4096, 3)] {
             let got = resample(&of(32, 32).view(), m, n).unwrap();
@@ -124,9 +109,7 @@ mod tests {
         let field = noisy(32, 32);
         let ends = |f: &Array3<f32>, c: usize| {
             let channel = f.index_axis(ndarray::Axis(0), c);
-            channel
-                .iter()
-                .fold((f32::MAX, f32::MIN), |(l, h), &x| (l.min(x), h.max(x)))
+            channel.iter().fold((f32::MAX, f32::MIN), |(l, h), &x| (l.min(x), h.max(x)))
         };
         for (m, n) in [(2, 2), (5, 4096), (33, 31), (200, 300)] {
             let got = resample(&field.view(), m, n).unwrap();
@@ -141,10 +124,7 @@ mod tests {
     fn refuses_bad_sizes() {
         let field = noisy(32, 32);
         for (m, n) in [(1, 1), (0, 5), (70_000, 2), (2, 4097)] {
-            assert!(matches!(
-                resample(&field.view(), m, n),
-                Err(Error::GridSize { .. })
-            ));
+            assert!(matches!(resample(&field.view(), m, n), Err(Error::GridSize { .. })));
         }
     }
 

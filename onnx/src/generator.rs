@@ -37,15 +37,7 @@ pub struct Request<'a> {
 impl<'a> Request<'a> {
     /// The fabric of a description on 32 x 32 particles, 1 m x 1 m, nothing pinned, seed 0.
     pub fn new(description: &'a str) -> Self {
-        Request {
-            description,
-            seed: 0,
-            rows: 32,
-            columns: 32,
-            width_m: 1.0,
-            height_m: 1.0,
-            pins: &[],
-        }
+        Request { description, seed: 0, rows: 32, columns: 32, width_m: 1.0, height_m: 1.0, pins: &[] }
     }
 }
 
@@ -94,16 +86,8 @@ impl Correction {
         let numbers = self.field.as_standard_layout();
         let numbers = numbers.as_slice().unwrap_or_default();
         let fabric = self.fabric();
-        baked::write(
-            rows,
-            columns,
-            numbers,
-            &fabric,
-            self.seed,
-            &self.description,
-            &mut bytes,
-        )
-        .map_err(Error::Baked)?;
+        baked::write(rows, columns, numbers, &fabric, self.seed, &self.description, &mut bytes)
+            .map_err(Error::Baked)?;
         Ok(bytes)
     }
 }
@@ -117,9 +101,7 @@ pub struct Generator {
 
 impl fmt::Debug for Generator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Generator")
-            .field("info", &self.info)
-            .finish_non_exhaustive()
+        f.debug_struct("Generator").field("info", &self.info).finish_non_exhaustive()
     }
 }
 
@@ -128,9 +110,7 @@ impl Generator {
     /// that is about a file; see [`Error`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Generator, Error> {
         if bytes.len() > MAX_FILE_BYTES {
-            return Err(Error::TooLarge {
-                limit: MAX_FILE_BYTES,
-            });
+            return Err(Error::TooLarge { limit: MAX_FILE_BYTES });
         }
         let entries = wire::metadata(bytes)?;
         let (mut info, vocabulary) = metadata::parse(&entries)?;
@@ -138,26 +118,17 @@ impl Generator {
         info.parameters = checked.parameters;
         info.file_bytes = bytes.len();
         let plan = Plan::build(&checked.model, &info)?;
-        Ok(Generator {
-            info,
-            vocabulary,
-            plan,
-        })
+        Ok(Generator { info, vocabulary, plan })
     }
 
     /// Reads a generator file. Errors: [`Error::Io`], and those of [`Generator::from_bytes`].
     pub fn load(path: impl AsRef<Path>) -> Result<Generator, Error> {
         let path = path.as_ref();
-        let io = |e: std::io::Error| Error::Io {
-            path: path.display().to_string(),
-            reason: e.to_string(),
-        };
+        let io = |e: std::io::Error| Error::Io { path: path.display().to_string(), reason: e.to_string() };
         let file = std::fs::File::open(path).map_err(io)?;
         let mut bytes = Vec::new();
         // one byte more than allowed tells a file that is too large, even one that never ends
-        file.take(MAX_FILE_BYTES as u64 + 1)
-            .read_to_end(&mut bytes)
-            .map_err(io)?;
+        file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
         Generator::from_bytes(&bytes)
     }
 
@@ -189,22 +160,14 @@ impl Generator {
             indices[i] = row as i64;
             weights[i] = 1.0 / known as f32;
         }
-        let noise: Vec<f32> = (0..info.noise)
-            .map(|i| taut::noise::gaussian(request.seed, i as u32))
-            .collect();
+        let noise: Vec<f32> = (0..info.noise).map(|i| taut::noise::gaussian(request.seed, i as u32)).collect();
         let pin_distance: Vec<f32> = pin_distance.iter().copied().collect();
-        let [field, fabric] = self.plan.run(&Feed {
-            tokens: &indices,
-            weights: &weights,
-            noise: &noise,
-            pin_distance: &pin_distance,
-        })?;
+        let [field, fabric] =
+            self.plan.run(&Feed { tokens: &indices, weights: &weights, noise: &noise, pin_distance: &pin_distance })?;
 
         let shape = (CHANNELS.len(), info.grid, info.grid);
-        let tanh = ArrayView3::from_shape(shape, &field).map_err(|e| Error::Inference {
-            stage: "run",
-            reason: e.to_string(),
-        })?;
+        let tanh = ArrayView3::from_shape(shape, &field)
+            .map_err(|e| Error::Inference { stage: "run", reason: e.to_string() })?;
         let decoded = field::decode(&tanh, &info.channel_ranges);
         let mut field = field::resample(&decoded.view(), rows, columns)?;
         field::cap_bend(&mut field);

@@ -5,8 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use tract_onnx::pb::tensor_shape_proto::{Dimension, dimension};
 use tract_onnx::pb::{
-    GraphProto, ModelProto, NodeProto, TensorProto, TensorShapeProto, TypeProto, ValueInfoProto,
-    type_proto,
+    GraphProto, ModelProto, NodeProto, TensorProto, TensorShapeProto, TypeProto, ValueInfoProto, type_proto,
 };
 use tract_onnx::prelude::{Framework, tract_data::half::f16};
 
@@ -47,31 +46,20 @@ pub(crate) fn input_shapes(info: &Info) -> [(Kind, Vec<usize>); 4] {
 
 /// Shapes of the outputs for one description, in the order of [`OUTPUTS`].
 pub(crate) fn output_shapes(info: &Info) -> [Vec<usize>; 2] {
-    [
-        vec![1, info.channel_ranges.len(), info.grid, info.grid],
-        vec![1, info.fabric_ranges.len()],
-    ]
+    [vec![1, info.channel_ranges.len(), info.grid, info.grid], vec![1, info.fabric_ranges.len()]]
 }
 
 /// Decodes and checks the graph of a file whose metadata is `info`.
 pub(crate) fn check(bytes: &[u8], info: &Info) -> Result<Checked, Error> {
     let mut reader = bytes;
-    let decoded = guarded("decode", || {
-        tract_onnx::onnx().proto_model_for_read(&mut reader)
-    });
+    let decoded = guarded("decode", || tract_onnx::onnx().proto_model_for_read(&mut reader));
     let mut model = decoded.map_err(|e| match e {
         Error::Inference { reason, .. } => Error::NotOnnx { reason },
         other => other,
     })?;
-    let opsets: Vec<_> = model
-        .opset_import
-        .iter()
-        .map(|o| (o.domain.as_str(), o.version))
-        .collect();
+    let opsets: Vec<_> = model.opset_import.iter().map(|o| (o.domain.as_str(), o.version)).collect();
     if model.ir_version != IR_VERSION || !matches!(opsets[..], [("" | "ai.onnx", OPSET)]) {
-        return Err(bad(format!(
-            "not of IR version {IR_VERSION} and operator set {OPSET}"
-        )));
+        return Err(bad(format!("not of IR version {IR_VERSION} and operator set {OPSET}")));
     }
     let Some(graph) = model.graph.take() else {
         return Err(bad("it is missing"));
@@ -88,9 +76,7 @@ pub(crate) fn check(bytes: &[u8], info: &Info) -> Result<Checked, Error> {
 }
 
 fn bad(reason: impl Into<String>) -> Error {
-    Error::Graph {
-        reason: reason.into(),
-    }
+    Error::Graph { reason: reason.into() }
 }
 
 fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error> {
@@ -114,24 +100,14 @@ fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error>
 
     let mut values: HashMap<String, Value> = HashMap::new();
     for (bit, (name, (kind, dims))) in INPUTS.iter().zip(inputs.clone()).enumerate() {
-        let value = Value {
-            kind,
-            dims,
-            sources: 1 << bit,
-            stored: false,
-            list: Vec::new(),
-        };
+        let value = Value { kind, dims, sources: 1 << bit, stored: false, list: Vec::new() };
         define(&mut values, name, value)?;
     }
     let mut weights: HashMap<String, TensorProto> = HashMap::new();
     let mut parameters = 0;
     for tensor in graph.initializer {
         let (value, tensor) = read_weight(tensor)?;
-        parameters += if value.kind == Kind::I64 {
-            0
-        } else {
-            value.dims.iter().product::<usize>()
-        };
+        parameters += if value.kind == Kind::I64 { 0 } else { value.dims.iter().product::<usize>() };
         define(&mut values, &tensor.name, value)?;
         weights.insert(tensor.name.clone(), tensor);
     }
@@ -153,10 +129,7 @@ fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error>
             // A stored f16 weight is widened here, once: the engine asks for stored parameters in
             // batch normalisation, and does not fold a Cast of more than 16 numbers in time.
             Some(weight) if node.op_type == "Cast" => {
-                let widened = TensorProto {
-                    name: output.clone(),
-                    ..weight.clone()
-                };
+                let widened = TensorProto { name: output.clone(), ..weight.clone() };
                 weights.insert(output, widened);
             }
             _ => {
@@ -169,11 +142,7 @@ fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error>
     }
     check_outputs(&nodes, &values, &outputs)?;
 
-    let used: HashSet<&str> = nodes
-        .iter()
-        .flat_map(|n| &n.input)
-        .map(String::as_str)
-        .collect();
+    let used: HashSet<&str> = nodes.iter().flat_map(|n| &n.input).map(String::as_str).collect();
     weights.retain(|name, _| used.contains(name.as_str()));
     let mut initializer: Vec<_> = weights.into_values().collect();
     initializer.sort_by(|a, b| a.name.cmp(&b.name));
@@ -186,16 +155,8 @@ fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error>
         node: nodes,
         name: "generator".into(),
         initializer,
-        input: INPUTS
-            .iter()
-            .zip(&inputs)
-            .map(|(n, (k, d))| declare(n, *k, d))
-            .collect(),
-        output: OUTPUTS
-            .iter()
-            .zip(&outputs)
-            .map(|(n, d)| declare(n, Kind::F32, d))
-            .collect(),
+        input: INPUTS.iter().zip(&inputs).map(|(n, (k, d))| declare(n, *k, d)).collect(),
+        output: OUTPUTS.iter().zip(&outputs).map(|(n, d)| declare(n, Kind::F32, d)).collect(),
         ..GraphProto::default()
     };
     Ok((graph, parameters))
@@ -205,37 +166,25 @@ fn rebuild(graph: GraphProto, info: &Info) -> Result<(GraphProto, usize), Error>
 fn measure(node: &NodeProto, values: &HashMap<String, Value>, info: &Info) -> Result<Value, Error> {
     let output = node.output.first().map_or("", String::as_str);
     if !matches!(node.domain.as_str(), "" | "ai.onnx") {
-        return Err(Error::Op {
-            op: format!("{}.{}", node.domain, node.op_type),
-            node: output.into(),
-        });
+        return Err(Error::Op { op: format!("{}.{}", node.domain, node.op_type), node: output.into() });
     }
     let mut inputs = Vec::new();
     for name in &node.input {
         let value = values.get(name);
         if value.is_none() && !name.is_empty() {
-            return Err(bad(format!(
-                "{output} reads {name}, which is not there before it"
-            )));
+            return Err(bad(format!("{output} reads {name}, which is not there before it")));
         }
         inputs.push(value);
     }
     let value = infer(&Call { node, inputs })?;
     if node.output.len() != 1 {
-        return Err(bad(format!(
-            "{} has {} outputs",
-            node.op_type,
-            node.output.len()
-        )));
+        return Err(bad(format!("{} has {} outputs", node.op_type, node.output.len())));
     }
     let folded = node.op_type == "Cast" && values.get(&node.input[0]).is_some_and(|v| v.stored);
     if node.op_type == "Gather" {
         let table = &values[&node.input[0]];
         if node.input[1] != INPUTS[0] {
-            return Err(bad(format!(
-                "{output} gathers by {}, not by tokens",
-                node.input[1]
-            )));
+            return Err(bad(format!("{output} gathers by {}, not by tokens", node.input[1])));
         }
         if table.dims[0] != info.words + 1 {
             return Err(Error::TensorShape {
@@ -245,27 +194,15 @@ fn measure(node: &NodeProto, values: &HashMap<String, Value>, info: &Info) -> Re
             });
         }
     }
-    let list = if folded {
-        values[&node.input[0]].list.clone()
-    } else {
-        Vec::new()
-    };
-    Ok(Value {
-        stored: folded,
-        list,
-        ..value
-    })
+    let list = if folded { values[&node.input[0]].list.clone() } else { Vec::new() };
+    Ok(Value { stored: folded, list, ..value })
 }
 
 /// A variance below 0 has no root. The engine would take what comes of it for 0, and run on.
 fn check_variance(node: &NodeProto, weights: &HashMap<String, TensorProto>) -> Result<(), Error> {
     let name = &node.input[4];
     let raw = weights.get(name).map_or(&[][..], |w| &w.raw_data);
-    let mut numbers = raw
-        .as_chunks::<4>()
-        .0
-        .iter()
-        .map(|&b| f32::from_le_bytes(b));
+    let mut numbers = raw.as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b));
     if numbers.any(|x| x < 0.0) {
         return Err(bad(format!("the variance {name} is negative")));
     }
@@ -289,20 +226,13 @@ fn define(values: &mut HashMap<String, Value>, name: &str, value: Value) -> Resu
 
 /// Outputs have the shapes that the metadata gives, come from tanh, and the fabric depends on the
 /// words alone: another seed must not be another fabric.
-fn check_outputs(
-    nodes: &[NodeProto],
-    values: &HashMap<String, Value>,
-    shapes: &[Vec<usize>; 2],
-) -> Result<(), Error> {
+fn check_outputs(nodes: &[NodeProto], values: &HashMap<String, Value>, shapes: &[Vec<usize>; 2]) -> Result<(), Error> {
     for (name, dims) in OUTPUTS.iter().zip(shapes) {
         let Some(node) = nodes.iter().find(|n| n.output[0] == *name) else {
             return Err(bad(format!("no node writes the output {name}")));
         };
         if node.op_type != "Tanh" {
-            return Err(bad(format!(
-                "the output {name} comes from {}, not from Tanh",
-                node.op_type
-            )));
+            return Err(bad(format!("the output {name} comes from {}, not from Tanh", node.op_type)));
         }
         if values[*name].dims != *dims {
             return Err(Error::TensorShape {
@@ -323,20 +253,11 @@ fn check_outputs(
 }
 
 /// Checks the declared type of an input or output; its batch may be 1 or left open.
-fn check_declared(
-    declared: &[ValueInfoProto],
-    name: &str,
-    kind: Kind,
-    dims: &[usize],
-) -> Result<(), Error> {
+fn check_declared(declared: &[ValueInfoProto], name: &str, kind: Kind, dims: &[usize]) -> Result<(), Error> {
     let Some(info) = declared.iter().find(|i| i.name == name) else {
         return Err(bad(format!("the input or output {name} is missing")));
     };
-    let Some(TypeProto {
-        value: Some(type_proto::Value::TensorType(tensor)),
-        ..
-    }) = &info.r#type
-    else {
+    let Some(TypeProto { value: Some(type_proto::Value::TensorType(tensor)), .. }) = &info.r#type else {
         return Err(bad(format!("{name} is declared without a type")));
     };
     if tensor.elem_type != kind.code() {
@@ -366,38 +287,21 @@ fn declared_type(kind: Kind, dims: &[usize]) -> TypeProto {
         value: Some(dimension::Value::DimValue(n as i64)),
         ..Dimension::default()
     };
-    let shape = TensorShapeProto {
-        dim: dims.iter().map(dim).collect(),
-    };
-    let tensor = type_proto::Tensor {
-        elem_type: kind.code(),
-        shape: Some(shape),
-    };
-    TypeProto {
-        value: Some(type_proto::Value::TensorType(tensor)),
-        ..TypeProto::default()
-    }
+    let shape = TensorShapeProto { dim: dims.iter().map(dim).collect() };
+    let tensor = type_proto::Tensor { elem_type: kind.code(), shape: Some(shape) };
+    TypeProto { value: Some(type_proto::Value::TensorType(tensor)), ..TypeProto::default() }
 }
 
 /// Checks a stored tensor and widens it: float numbers become f32. Its numbers must be finite.
 fn read_weight(tensor: TensorProto) -> Result<(Value, TensorProto), Error> {
     let name = tensor.name.clone();
     let Some(kind) = Kind::of_code(tensor.data_type) else {
-        return Err(bad(format!(
-            "the tensor {name} is not float32, float16 or int64"
-        )));
+        return Err(bad(format!("the tensor {name} is not float32, float16 or int64")));
     };
-    let dims: Option<Vec<usize>> = tensor
-        .dims
-        .iter()
-        .map(|&d| usize::try_from(d).ok())
-        .collect();
+    let dims: Option<Vec<usize>> = tensor.dims.iter().map(|&d| usize::try_from(d).ok()).collect();
     let sized = dims.and_then(|d| elements(&d).map(|n| (d, n)));
     let Some((dims, count)) = sized else {
-        return Err(bad(format!(
-            "the tensor {name} has the impossible shape {:?}",
-            tensor.dims
-        )));
+        return Err(bad(format!("the tensor {name} has the impossible shape {:?}", tensor.dims)));
     };
     let typed = !tensor.float_data.is_empty()
         || !tensor.int32_data.is_empty()
@@ -405,14 +309,8 @@ fn read_weight(tensor: TensorProto) -> Result<(Value, TensorProto), Error> {
         || !tensor.double_data.is_empty()
         || !tensor.uint64_data.is_empty()
         || !tensor.string_data.is_empty();
-    if typed
-        || tensor.segment.is_some()
-        || !tensor.external_data.is_empty()
-        || tensor.data_location.unwrap_or(0) != 0
-    {
-        return Err(bad(format!(
-            "the tensor {name} is not stored as raw data in the file"
-        )));
+    if typed || tensor.segment.is_some() || !tensor.external_data.is_empty() || tensor.data_location.unwrap_or(0) != 0 {
+        return Err(bad(format!("the tensor {name} is not stored as raw data in the file")));
     }
     let raw = tensor.raw_data;
     if raw.len() != count * kind.bytes() {
@@ -426,11 +324,7 @@ fn read_weight(tensor: TensorProto) -> Result<(Value, TensorProto), Error> {
     let short = count <= MAX_LIST && dims.len() == 1;
     let raw = match kind {
         Kind::I64 => {
-            let numbers = raw
-                .as_chunks::<8>()
-                .0
-                .iter()
-                .map(|&b| i64::from_le_bytes(b));
+            let numbers = raw.as_chunks::<8>().0.iter().map(|&b| i64::from_le_bytes(b));
             if short {
                 // sizes beyond 2^53 are refused by every rule that reads them
                 list = numbers.map(|n| n as f64).collect();
@@ -439,11 +333,7 @@ fn read_weight(tensor: TensorProto) -> Result<(Value, TensorProto), Error> {
         }
         Kind::F16 | Kind::F32 => {
             let raw = if kind == Kind::F16 { widen(&raw) } else { raw };
-            let mut numbers = raw
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .map(|&b| f32::from_le_bytes(b));
+            let mut numbers = raw.as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b));
             if numbers.clone().any(|x| !x.is_finite()) {
                 return Err(Error::Weights { tensor: name });
             }
@@ -457,24 +347,11 @@ fn read_weight(tensor: TensorProto) -> Result<(Value, TensorProto), Error> {
         name,
         dims: tensor.dims,
         // f16 is widened at once; the graph still sees it as f16 until its Cast
-        data_type: if kind == Kind::I64 {
-            kind.code()
-        } else {
-            Kind::F32.code()
-        },
+        data_type: if kind == Kind::I64 { kind.code() } else { Kind::F32.code() },
         raw_data: raw,
         ..TensorProto::default()
     };
-    Ok((
-        Value {
-            kind,
-            dims,
-            sources: 0,
-            stored: true,
-            list,
-        },
-        stored,
-    ))
+    Ok((Value { kind, dims, sources: 0, stored: true, list }, stored))
 }
 
 /// f16 numbers as f32 numbers, both little-endian.

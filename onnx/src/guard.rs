@@ -42,14 +42,8 @@ pub(crate) fn guarded<T, E: std::fmt::Display>(
     match result {
         Ok(Ok(value)) => Ok(value),
         // the alternate form of the engine's errors has the whole chain of causes
-        Ok(Err(e)) => Err(Error::Inference {
-            stage,
-            reason: format!("{e:#}"),
-        }),
-        Err(_) => Err(Error::Inference {
-            stage,
-            reason: PANICKED.into(),
-        }),
+        Ok(Err(e)) => Err(Error::Inference { stage, reason: format!("{e:#}") }),
+        Err(_) => Err(Error::Inference { stage, reason: PANICKED.into() }),
     }
 }
 
@@ -60,13 +54,7 @@ mod tests {
     #[test]
     fn a_panic_becomes_an_error() {
         let got: Result<(), Error> = guarded("run", || -> Result<(), String> { panic!("inside") });
-        assert_eq!(
-            got,
-            Err(Error::Inference {
-                stage: "run",
-                reason: PANICKED.into()
-            })
-        );
+        assert_eq!(got, Err(Error::Inference { stage: "run", reason: PANICKED.into() }));
         assert_eq!(guarded("run", || Ok::<_, String>(3)), Ok(3));
         assert!(!QUIET.get());
     }

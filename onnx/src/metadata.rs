@@ -8,13 +8,7 @@ use crate::wire::Entry;
 
 /// What the generator tells of the fabric, in its order, `taut.fabric`: area density, hinge
 /// rigidity, and the stretch limits along warp, weft and diagonal as fractions.
-pub const FABRIC: [&str; 5] = [
-    "density_kg_m2",
-    "hinge_rigidity_n_m",
-    "limit_warp",
-    "limit_weft",
-    "limit_diagonal",
-];
+pub const FABRIC: [&str; 5] = ["density_kg_m2", "hinge_rigidity_n_m", "limit_warp", "limit_weft", "limit_diagonal"];
 
 /// Sides of the field that the network writes. Beyond 256 a file is hostile, not detailed.
 const GRID: std::ops::RangeInclusive<usize> = 2..=256;
@@ -84,10 +78,7 @@ pub(crate) fn parse(entries: &[Entry<'_>]) -> Result<(Info, Vocabulary), Error> 
     let training_digest = get("taut.training_digest")?;
     let hex = training_digest.bytes().all(|b| b.is_ascii_hexdigit());
     if !hex || !(1..=MAX_NAME).contains(&training_digest.len()) {
-        return Err(bad(
-            "taut.training_digest",
-            "not 1 to 128 hexadecimal digits",
-        ));
+        return Err(bad("taut.training_digest", "not 1 to 128 hexadecimal digits"));
     }
     let model_name = get("taut.model_name")?;
     let printable = model_name.chars().all(|c| !c.is_control());
@@ -111,10 +102,7 @@ pub(crate) fn parse(entries: &[Entry<'_>]) -> Result<(Info, Vocabulary), Error> 
 }
 
 fn bad(key: &str, reason: impl Into<String>) -> Error {
-    Error::Metadata {
-        key: key.into(),
-        reason: reason.into(),
-    }
+    Error::Metadata { key: key.into(), reason: reason.into() }
 }
 
 fn exactly(key: &str, value: &str, expected: &str) -> Result<(), Error> {
@@ -122,10 +110,7 @@ fn exactly(key: &str, value: &str, expected: &str) -> Result<(), Error> {
         return Ok(());
     }
     let found: String = value.chars().take(80).collect();
-    Err(bad(
-        key,
-        format!("\"{found}\", this build reads \"{expected}\""),
-    ))
+    Err(bad(key, format!("\"{found}\", this build reads \"{expected}\"")))
 }
 
 fn count(key: &str, value: &str, bounds: std::ops::RangeInclusive<usize>) -> Result<usize, Error> {
@@ -134,14 +119,7 @@ fn count(key: &str, value: &str, bounds: std::ops::RangeInclusive<usize>) -> Res
     let number = if digits { value.parse().ok() } else { None };
     number.filter(|n| bounds.contains(n)).ok_or_else(|| {
         let found: String = value.chars().take(40).collect();
-        bad(
-            key,
-            format!(
-                "\"{found}\" is not within {} to {}",
-                bounds.start(),
-                bounds.end()
-            ),
-        )
+        bad(key, format!("\"{found}\" is not within {} to {}", bounds.start(), bounds.end()))
     })
 }
 
@@ -151,17 +129,11 @@ fn ranges<const N: usize>(key: &str, value: &str) -> Result<[Range; N], Error> {
     if pairs.len() != N {
         return Err(bad(key, format!("{} ranges, expected {N}", pairs.len())));
     }
-    let mut out = [Range {
-        low: 1.0,
-        high: 1.0,
-    }; N];
+    let mut out = [Range { low: 1.0, high: 1.0 }; N];
     for (range, pair) in out.iter_mut().zip(pairs) {
         *range = parse_range(pair).ok_or_else(|| {
             let pair: String = pair.chars().take(60).collect();
-            bad(
-                key,
-                format!("\"{pair}\" is not low:high with 1e-12 <= low < high <= 1e12"),
-            )
+            bad(key, format!("\"{pair}\" is not low:high with 1e-12 <= low < high <= 1e12"))
         })?;
     }
     Ok(out)
@@ -182,18 +154,9 @@ mod tests {
         ("taut.format", "1"),
         ("taut.vocabulary", "<pad>\ncotton\ndenim"),
         ("taut.channels", "warp,weft,shear,bend"),
-        (
-            "taut.channel_ranges_n_per_m",
-            "5:20000,5:20000,1:8000,0.02:400",
-        ),
-        (
-            "taut.fabric",
-            "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal",
-        ),
-        (
-            "taut.fabric_ranges",
-            "0.03:0.8,1e-7:1e-3,0.0005:0.3,0.0005:0.3,0.0005:0.3",
-        ),
+        ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:400"),
+        ("taut.fabric", "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal"),
+        ("taut.fabric_ranges", "0.03:0.8,1e-7:1e-3,0.0005:0.3,0.0005:0.3,0.0005:0.3"),
         ("taut.grid", "32"),
         ("taut.noise", "128"),
         ("taut.tokens", "16"),
@@ -202,67 +165,33 @@ mod tests {
     ];
 
     fn with(key: &str, value: &'static str) -> Result<(Info, Vocabulary), Error> {
-        let entries: Vec<_> = GOOD
-            .iter()
-            .map(|&(k, v)| Entry {
-                key: k,
-                value: if k == key { value } else { v },
-            })
-            .collect();
+        let entries: Vec<_> =
+            GOOD.iter().map(|&(k, v)| Entry { key: k, value: if k == key { value } else { v } }).collect();
         parse(&entries)
     }
 
     #[test]
     fn reads_every_key() {
         let (info, vocabulary) = with("", "").unwrap();
-        assert_eq!(
-            (info.grid, info.noise, info.tokens, info.words),
-            (32, 128, 16, 2)
-        );
-        assert_eq!(
-            info.channel_ranges[3],
-            Range {
-                low: 0.02,
-                high: 400.0
-            }
-        );
-        assert_eq!(
-            info.fabric_ranges[1],
-            Range {
-                low: 1e-7,
-                high: 1e-3
-            }
-        );
+        assert_eq!((info.grid, info.noise, info.tokens, info.words), (32, 128, 16, 2));
+        assert_eq!(info.channel_ranges[3], Range { low: 0.02, high: 400.0 });
+        assert_eq!(info.fabric_ranges[1], Range { low: 1e-7, high: 1e-3 });
         assert_eq!(vocabulary.index("denim"), Some(2));
     }
 
     #[test]
     fn names_the_missing_key() {
         for missing in 0..GOOD.len() {
-            let mut entries: Vec<_> = GOOD
-                .iter()
-                .map(|&(key, value)| Entry { key, value })
-                .collect();
+            let mut entries: Vec<_> = GOOD.iter().map(|&(key, value)| Entry { key, value }).collect();
             entries.remove(missing);
-            assert_eq!(
-                parse(&entries),
-                Err(Error::MetadataMissing {
-                    key: GOOD[missing].0
-                })
-            );
+            assert_eq!(parse(&entries), Err(Error::MetadataMissing { key: GOOD[missing].0 }));
         }
     }
 
     #[test]
     fn refuses_a_key_that_is_there_twice() {
-        let mut entries: Vec<_> = GOOD
-            .iter()
-            .map(|&(key, value)| Entry { key, value })
-            .collect();
-        entries.push(Entry {
-            key: "taut.grid",
-            value: "64",
-        });
+        let mut entries: Vec<_> = GOOD.iter().map(|&(key, value)| Entry { key, value }).collect();
+        entries.push(Entry { key: "taut.grid", value: "64" });
         assert!(matches!(parse(&entries), Err(Error::Metadata { key, .. }) if key == "taut.grid"));
     }
 
@@ -275,43 +204,16 @@ mod tests {
             ("taut.channels", "warp,weft,shear"),
             ("taut.fabric", "density_kg_m2"),
             ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000"),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,0.02:400,1:2",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,nan:400",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,0.02:NaN",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,0.02:inf",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,-1:400",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,0:400",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "20000:5,5:20000,1:8000,0.02:400",
-            ),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:400,1:2"),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,nan:400"),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:NaN"),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:inf"),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,-1:400"),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0:400"),
+            ("taut.channel_ranges_n_per_m", "20000:5,5:20000,1:8000,0.02:400"),
             ("taut.channel_ranges_n_per_m", "5:5,5:20000,1:8000,0.02:400"),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5:20000,5:20000,1:8000,0.02:1e39",
-            ),
-            (
-                "taut.channel_ranges_n_per_m",
-                "5 20000,5:20000,1:8000,0.02:400",
-            ),
+            ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:1e39"),
+            ("taut.channel_ranges_n_per_m", "5 20000,5:20000,1:8000,0.02:400"),
             ("taut.fabric_ranges", ""),
             ("taut.fabric_ranges", "a:b,c:d,e:f,g:h,i:j"),
             ("taut.grid", "1"),

@@ -32,11 +32,7 @@ impl Plan {
             model.into_optimized()?.into_runnable()
         })?;
         let inputs = input_shapes(info).map(|(_, dims)| dims);
-        Ok(Plan {
-            runnable,
-            inputs,
-            outputs: output_shapes(info),
-        })
+        Ok(Plan { runnable, inputs, outputs: output_shapes(info) })
     }
 
     /// Runs the network. The result is `field` and `fabric` as they stand in the file's contract,
@@ -54,17 +50,10 @@ impl Plan {
                 let view = t.to_plain_array_view::<f32>()?;
                 Ok((view.shape().to_vec(), view.iter().copied().collect()))
             };
-            self.runnable
-                .run(inputs)?
-                .iter()
-                .map(read)
-                .collect::<TractResult<Vec<_>>>()
+            self.runnable.run(inputs)?.iter().map(read).collect::<TractResult<Vec<_>>>()
         })?;
         let Ok([field, fabric]) = <[_; 2]>::try_from(outputs) else {
-            return Err(Error::Inference {
-                stage: "run",
-                reason: "another number of outputs".into(),
-            });
+            return Err(Error::Inference { stage: "run", reason: "another number of outputs".into() });
         };
         let field = checked(field, "field", &self.outputs[0])?;
         let fabric = checked(fabric, "fabric", &self.outputs[1])?;
@@ -106,13 +95,7 @@ mod tests {
         assert_eq!(check(-1.0), Ok(vec![0.5, -1.0]));
         assert_eq!(check(1.000_001), Ok(vec![0.5, 1.0]));
         for x in [1.1, -3.0, f32::INFINITY] {
-            assert_eq!(
-                check(x),
-                Err(Error::Output {
-                    output: "field",
-                    value: x
-                })
-            );
+            assert_eq!(check(x), Err(Error::Output { output: "field", value: x }));
         }
         assert!(matches!(check(f32::NAN), Err(Error::Output { .. })));
         let other = checked((vec![2], vec![0.0; 2]), "field", &[1, 2]);

@@ -24,12 +24,7 @@ pub fn pin_distance(
         return Err(Error::SideLength { width_m, height_m });
     }
     if let Some(&(row, column)) = pins.iter().find(|p| p.0 >= rows || p.1 >= columns) {
-        return Err(Error::Pin {
-            row,
-            column,
-            rows,
-            columns,
-        });
+        return Err(Error::Pin { row, column, rows, columns });
     }
     let larger = f64::from(width_m.max(height_m));
     // sides in units of the larger one
@@ -43,24 +38,17 @@ pub fn pin_distance(
         pinned_rows[row].push(column);
     }
     let mut along_u: Vec<Vec<(f64, f64)>> = vec![Vec::new(); grid];
-    for (row, pinned) in pinned_rows
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| !p.is_empty())
-    {
+    for (row, pinned) in pinned_rows.iter().enumerate().filter(|(_, p)| !p.is_empty()) {
         let v = place(row, rows, height);
         for (j, nearest) in along_u.iter_mut().enumerate() {
             let u = place(j, grid, width);
-            let squared =
-                |&c: &usize| (place(c, columns, width) - u) * (place(c, columns, width) - u);
+            let squared = |&c: &usize| (place(c, columns, width) - u) * (place(c, columns, width) - u);
             nearest.push((v, pinned.iter().map(squared).fold(f64::INFINITY, f64::min)));
         }
     }
     Ok(Array2::from_shape_fn((grid, grid), |(i, j)| {
         let v = place(i, grid, height);
-        let squared = along_u[j]
-            .iter()
-            .map(|&(row_v, du2)| (row_v - v) * (row_v - v) + du2);
+        let squared = along_u[j].iter().map(|&(row_v, du2)| (row_v - v) * (row_v - v) + du2);
         // infinite when nothing is pinned
         squared.fold(f64::INFINITY, f64::min).sqrt().min(1.0) as f32
     }))
@@ -69,11 +57,7 @@ pub fn pin_distance(
 /// Whether both sides have 2 to 4096 particles.
 pub(crate) fn check_grid(rows: usize, columns: usize) -> Result<(), Error> {
     let side = |n| (2..=4096).contains(&n);
-    if side(rows) && side(columns) {
-        Ok(())
-    } else {
-        Err(Error::GridSize { rows, columns })
-    }
+    if side(rows) && side(columns) { Ok(()) } else { Err(Error::GridSize { rows, columns }) }
 }
 
 #[cfg(test)]
@@ -106,18 +90,10 @@ mod tests {
             let (u, v) = at(i as f64 / 31.0, j as f64 / 31.0);
             let nearest = pins
                 .iter()
-                .map(|&(r, c)| {
-                    at(
-                        r as f64 / (rows - 1) as f64,
-                        c as f64 / (columns - 1) as f64,
-                    )
-                })
+                .map(|&(r, c)| at(r as f64 / (rows - 1) as f64, c as f64 / (columns - 1) as f64))
                 .map(|(pu, pv)| (pu - u).hypot(pv - v) / 2.0)
                 .fold(1.0, f64::min);
-            assert!(
-                (f64::from(d) - nearest).abs() < 1e-6,
-                "{i} {j}: {d} {nearest}"
-            );
+            assert!((f64::from(d) - nearest).abs() < 1e-6, "{i} {j}: {d} {nearest}");
         }
     }
 
@@ -138,32 +114,12 @@ mod tests {
     #[test]
     fn refuses_bad_scenes() {
         let map = |pins: &[(usize, usize)], shape, sides| pin_distance(32, pins, shape, sides);
-        assert!(matches!(
-            map(&[], [1, 1], [1.0, 1.0]),
-            Err(Error::GridSize { .. })
-        ));
-        assert!(matches!(
-            map(&[], [70_000, 2], [1.0, 1.0]),
-            Err(Error::GridSize { .. })
-        ));
-        for sides in [
-            [0.0, 1.0],
-            [1.0, f32::NAN],
-            [f32::INFINITY, 1.0],
-            [1.0, -1.0],
-            [2e4, 1.0],
-        ] {
-            assert!(matches!(
-                map(&[], [2, 2], sides),
-                Err(Error::SideLength { .. })
-            ));
+        assert!(matches!(map(&[], [1, 1], [1.0, 1.0]), Err(Error::GridSize { .. })));
+        assert!(matches!(map(&[], [70_000, 2], [1.0, 1.0]), Err(Error::GridSize { .. })));
+        for sides in [[0.0, 1.0], [1.0, f32::NAN], [f32::INFINITY, 1.0], [1.0, -1.0], [2e4, 1.0]] {
+            assert!(matches!(map(&[], [2, 2], sides), Err(Error::SideLength { .. })));
         }
-        let pin = Error::Pin {
-            row: 0,
-            column: 2,
-            rows: 2,
-            columns: 2,
-        };
+        let pin = Error::Pin { row: 0, column: 2, rows: 2, columns: 2 };
         assert_eq!(map(&[(1, 1), (0, 2)], [2, 2], [1.0, 1.0]), Err(pin));
     }
 }

@@ -30,17 +30,10 @@ pub(crate) fn infer(call: &Call<'_>) -> Result<Value, Error> {
         "Expand" => expand(call),
         "Transpose" => transpose(call),
         "Resize" => resize(call),
-        op => Err(Error::Op {
-            op: op.into(),
-            node: call.output().into(),
-        }),
+        op => Err(Error::Op { op: op.into(), node: call.output().into() }),
     }?;
     elements(&out.dims).ok_or_else(|| call.bad("its output is too large"))?;
-    out.sources = call
-        .inputs
-        .iter()
-        .flatten()
-        .fold(0, |bits, v| bits | v.sources);
+    out.sources = call.inputs.iter().flatten().fold(0, |bits, v| bits | v.sources);
     Ok(out)
 }
 
@@ -56,11 +49,7 @@ fn cast(call: &Call<'_>) -> Result<Value, Error> {
 fn gather(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &["axis"])?;
     let (table, rows) = (call.input(0)?, call.input(1)?);
-    if table.kind == Kind::I64
-        || !table.stored
-        || rows.kind != Kind::I64
-        || call.int("axis", 0)? != 0
-    {
+    if table.kind == Kind::I64 || !table.stored || rows.kind != Kind::I64 || call.int("axis", 0)? != 0 {
         return Err(call.bad("only rows (int64) of a stored table are read"));
     }
     if table.dims.len() != 2 {
@@ -97,8 +86,7 @@ fn squeeze(call: &Call<'_>) -> Result<Value, Error> {
 fn broadcast(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
     let (a, b) = (call.float(0)?, call.float(1)?);
-    let dims = join(&a.dims, &b.dims)
-        .ok_or_else(|| call.shape(1, &format!("one that fits {:?}", a.dims)))?;
+    let dims = join(&a.dims, &b.dims).ok_or_else(|| call.shape(1, &format!("one that fits {:?}", a.dims)))?;
     Ok(Value::computed(Kind::F32, dims))
 }
 
@@ -143,8 +131,7 @@ fn concat(call: &Call<'_>) -> Result<Value, Error> {
     let axis = call.axis(call.int("axis", 0)?, dims.len())?;
     for i in 1..call.inputs.len() {
         let next = &call.float(i)?.dims;
-        let fits =
-            next.len() == dims.len() && (0..dims.len()).all(|k| k == axis || next[k] == dims[k]);
+        let fits = next.len() == dims.len() && (0..dims.len()).all(|k| k == axis || next[k] == dims[k]);
         if !fits {
             return Err(call.shape(i, &format!("{dims:?} but for axis {axis}")));
         }
@@ -156,14 +143,7 @@ fn concat(call: &Call<'_>) -> Result<Value, Error> {
 
 /// Conv and ConvTranspose in two dimensions, one group, no dilation.
 fn convolution(call: &Call<'_>, transposed: bool) -> Result<Value, Error> {
-    let common = [
-        "kernel_shape",
-        "strides",
-        "pads",
-        "dilations",
-        "group",
-        "output_padding",
-    ];
+    let common = ["kernel_shape", "strides", "pads", "dilations", "group", "output_padding"];
     call.takes(2..=3, if transposed { &common } else { &common[..5] })?;
     let (x, w) = (call.float(0)?, call.weight(1)?);
     let &[batch, channels, height, width] = x.dims.as_slice() else {
@@ -195,38 +175,20 @@ fn convolution(call: &Call<'_>, transposed: bool) -> Result<Value, Error> {
     let extra = call.ints("output_padding", [0, 0], 0..=7)?;
     let mut sides = [0; 2];
     for (a, (side, size)) in sides.iter_mut().zip([height, width]).enumerate() {
-        if pads[a] >= kernel[a]
-            || pads[a + 2] >= kernel[a]
-            || (extra[a] > 0 && extra[a] >= strides[a])
-        {
+        if pads[a] >= kernel[a] || pads[a + 2] >= kernel[a] || (extra[a] > 0 && extra[a] >= strides[a]) {
             return Err(call.bad("its padding is larger than its kernel or stride"));
         }
         let pad = pads[a] + pads[a + 2];
         let out = if transposed {
             ((size - 1) * strides[a] + kernel[a] + extra[a]).checked_sub(pad)
         } else {
-            (size + pad)
-                .checked_sub(kernel[a])
-                .map(|free| free / strides[a] + 1)
+            (size + pad).checked_sub(kernel[a]).map(|free| free / strides[a] + 1)
         };
-        *side = out
-            .filter(|&n| n > 0)
-            .ok_or_else(|| call.bad("its output is empty"))?;
+        *side = out.filter(|&n| n > 0).ok_or_else(|| call.bad("its output is empty"))?;
     }
     let [rows, columns] = if transposed { [height, width] } else { sides };
-    call.work(&[
-        batch,
-        channels,
-        outputs,
-        kernel_rows,
-        kernel_columns,
-        rows,
-        columns,
-    ])?;
-    Ok(Value::computed(
-        Kind::F32,
-        vec![batch, outputs, sides[0], sides[1]],
-    ))
+    call.work(&[batch, channels, outputs, kernel_rows, kernel_columns, rows, columns])?;
+    Ok(Value::computed(Kind::F32, vec![batch, outputs, sides[0], sides[1]]))
 }
 
 fn batch_normalization(call: &Call<'_>) -> Result<Value, Error> {
@@ -281,10 +243,7 @@ fn gemm(call: &Call<'_>) -> Result<Value, Error> {
 
 fn mat_mul(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
-    let (&[rows, inner], &[inner_b, columns]) = (
-        call.float(0)?.dims.as_slice(),
-        call.float(1)?.dims.as_slice(),
-    ) else {
+    let (&[rows, inner], &[inner_b, columns]) = (call.float(0)?.dims.as_slice(), call.float(1)?.dims.as_slice()) else {
         return Err(call.bad("only two axes are read"));
     };
     if inner != inner_b {
@@ -307,10 +266,7 @@ fn reshape(call: &Call<'_>) -> Result<Value, Error> {
     for (i, &want) in wanted.iter().enumerate() {
         dims.push(match want {
             // 0 copies the axis, -1 is what is left
-            0 => *x
-                .dims
-                .get(i)
-                .ok_or_else(|| call.bad("it copies an axis that is not there"))?,
+            0 => *x.dims.get(i).ok_or_else(|| call.bad("it copies an axis that is not there"))?,
             -1 if free.is_none() => {
                 free = Some(i);
                 1
@@ -331,16 +287,9 @@ fn reshape(call: &Call<'_>) -> Result<Value, Error> {
 fn expand(call: &Call<'_>) -> Result<Value, Error> {
     call.takes(2..=2, &[])?;
     let x = call.float(0)?;
-    let wanted: Option<Vec<usize>> = call
-        .integers(1)?
-        .iter()
-        .map(|&n| usize::try_from(n).ok())
-        .collect();
+    let wanted: Option<Vec<usize>> = call.integers(1)?.iter().map(|&n| usize::try_from(n).ok()).collect();
     let dims = wanted.and_then(|w| join(&x.dims, &w));
-    Ok(Value::computed(
-        Kind::F32,
-        dims.ok_or_else(|| call.shape(0, "one that stretches to the wanted"))?,
-    ))
+    Ok(Value::computed(Kind::F32, dims.ok_or_else(|| call.shape(0, "one that stretches to the wanted"))?))
 }
 
 fn transpose(call: &Call<'_>) -> Result<Value, Error> {
@@ -354,46 +303,23 @@ fn transpose(call: &Call<'_>) -> Result<Value, Error> {
         return Err(call.bad("its perm is no permutation"));
     }
     // each is within 0 and the rank
-    Ok(Value::computed(
-        Kind::F32,
-        perm.iter().map(|&i| x.dims[i as usize]).collect(),
-    ))
+    Ok(Value::computed(Kind::F32, perm.iter().map(|&i| x.dims[i as usize]).collect()))
 }
 
 /// Nearest neighbour, to a whole multiple of both sides, given by scales or by sizes.
 fn resize(call: &Call<'_>) -> Result<Value, Error> {
-    call.takes(
-        3..=4,
-        &["mode", "coordinate_transformation_mode", "nearest_mode"],
-    )?;
+    call.takes(3..=4, &["mode", "coordinate_transformation_mode", "nearest_mode"])?;
     call.text("mode", "nearest", &["nearest"])?;
-    call.text(
-        "coordinate_transformation_mode",
-        "half_pixel",
-        &["half_pixel", "asymmetric"],
-    )?;
-    call.text(
-        "nearest_mode",
-        "round_prefer_floor",
-        &["floor", "round_prefer_floor"],
-    )?;
+    call.text("coordinate_transformation_mode", "half_pixel", &["half_pixel", "asymmetric"])?;
+    call.text("nearest_mode", "round_prefer_floor", &["floor", "round_prefer_floor"])?;
     let x = call.float(0)?;
     if x.dims.len() != 4 {
         return Err(call.shape(0, "batch x channels x rows x columns"));
     }
-    let wanted: Vec<f64> = match (
-        call.inputs[1],
-        call.inputs[2],
-        call.inputs.get(3).copied().flatten(),
-    ) {
+    let wanted: Vec<f64> = match (call.inputs[1], call.inputs[2], call.inputs.get(3).copied().flatten()) {
         (None, Some(_), None) => {
             let scales = call.weight(2)?;
-            scales
-                .list
-                .iter()
-                .zip(&x.dims)
-                .map(|(s, &d)| s * d as f64)
-                .collect()
+            scales.list.iter().zip(&x.dims).map(|(s, &d)| s * d as f64).collect()
         }
         (None, None, Some(_)) => call.integers(3)?.iter().map(|&n| n as f64).collect(),
         _ => return Err(call.bad("either scales or sizes are read")),
@@ -409,8 +335,5 @@ fn resize(call: &Call<'_>) -> Result<Value, Error> {
     {
         return Err(call.bad("only whole multiples of both sides are read"));
     }
-    Ok(Value::computed(
-        Kind::F32,
-        wanted.iter().map(|&n| n as usize).collect(),
-    ))
+    Ok(Value::computed(Kind::F32, wanted.iter().map(|&n| n as usize).collect()))
 }

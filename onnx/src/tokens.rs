@@ -23,11 +23,7 @@ impl Tokens {
     /// separates words. A word that the vocabulary lacks is tried without its plural s; a hyphenated
     /// one that is still unknown is split at its hyphens. Errors: [`Error::NoKnownWord`],
     /// [`Error::LongDescription`].
-    pub(crate) fn of(
-        description: &str,
-        vocabulary: &Vocabulary,
-        limit: usize,
-    ) -> Result<Tokens, Error> {
+    pub(crate) fn of(description: &str, vocabulary: &Vocabulary, limit: usize) -> Result<Tokens, Error> {
         if description.len() > MAX_DESCRIPTION_BYTES {
             let (bytes, limit) = (description.len(), MAX_DESCRIPTION_BYTES);
             return Err(Error::LongDescription { bytes, limit });
@@ -47,9 +43,7 @@ impl Tokens {
             }
         }
         if tokens.rows.is_empty() {
-            return Err(Error::NoKnownWord {
-                unknown: tokens.unknown,
-            });
+            return Err(Error::NoKnownWord { unknown: tokens.unknown });
         }
         Ok(tokens)
     }
@@ -57,9 +51,7 @@ impl Tokens {
     /// Takes a word if the vocabulary has it, as it is or without a plural s.
     fn know(&mut self, word: &str, vocabulary: &Vocabulary, limit: usize) -> bool {
         let singular = word.strip_suffix('s');
-        let found = std::iter::once(word)
-            .chain(singular)
-            .find_map(|w| vocabulary.index(w).map(|row| (w, row)));
+        let found = std::iter::once(word).chain(singular).find_map(|w| vocabulary.index(w).map(|row| (w, row)));
         let Some((word, row)) = found else {
             return false;
         };
@@ -99,8 +91,7 @@ mod tests {
     use super::*;
 
     fn vocabulary() -> Vocabulary {
-        Vocabulary::parse("<pad>\nheavy\nblue\ndenim\nnon-woven\nstretch\ncotton\nglass\njean")
-            .unwrap()
+        Vocabulary::parse("<pad>\nheavy\nblue\ndenim\nnon-woven\nstretch\ncotton\nglass\njean").unwrap()
     }
 
     fn of(text: &str) -> Result<Tokens, Error> {
@@ -110,10 +101,7 @@ mod tests {
     #[test]
     fn splits_and_lowers() {
         assert_eq!(split("Heavy, BLUE denim!"), ["heavy", "blue", "denim"]);
-        assert_eq!(
-            split("a--b -c- d-e 11oz/12 caf\u{e9}s\u{212a}"),
-            ["a", "b", "c", "d-e", "11oz", "12", "caf", "s"]
-        );
+        assert_eq!(split("a--b -c- d-e 11oz/12 caf\u{e9}s\u{212a}"), ["a", "b", "c", "d-e", "11oz", "12", "caf", "s"]);
         assert!(split(" -- \u{2014}\n").is_empty());
     }
 
@@ -139,10 +127,7 @@ mod tests {
         let t = of("stretch-denims").unwrap();
         assert_eq!(t.words, ["stretch", "denim"]);
         let t = of("blue-ish denim").unwrap();
-        assert_eq!(
-            (t.words, t.unknown),
-            (vec!["blue".into(), "denim".into()], vec!["ish".into()])
-        );
+        assert_eq!((t.words, t.unknown), (vec!["blue".into(), "denim".into()], vec!["ish".into()]));
     }
 
     #[test]
@@ -151,17 +136,10 @@ mod tests {
         assert_eq!(t.unknown, ["foo", "bar"]);
         assert_eq!(
             of("foo bar-baz"),
-            Err(Error::NoKnownWord {
-                unknown: vec!["foo".into(), "bar".into(), "baz".into()]
-            })
+            Err(Error::NoKnownWord { unknown: vec!["foo".into(), "bar".into(), "baz".into()] })
         );
         assert_eq!(of(""), Err(Error::NoKnownWord { unknown: vec![] }));
-        assert_eq!(
-            of("<pad>"),
-            Err(Error::NoKnownWord {
-                unknown: vec!["pad".into()]
-            })
-        );
+        assert_eq!(of("<pad>"), Err(Error::NoKnownWord { unknown: vec!["pad".into()] }));
     }
 
     #[test]
@@ -175,9 +153,6 @@ mod tests {
     #[test]
     fn a_book_is_no_description() {
         let text = "denim ".repeat(10_000);
-        assert!(matches!(
-            of(&text),
-            Err(Error::LongDescription { bytes: 60_000, .. })
-        ));
+        assert!(matches!(of(&text), Err(Error::LongDescription { bytes: 60_000, .. })));
     }
 }

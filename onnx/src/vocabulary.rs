@@ -19,10 +19,7 @@ impl Vocabulary {
     /// Reads the value of `taut.vocabulary`: one word a line, line 0 is the padding. A word is made
     /// of a-z and 0-9, with single hyphens inside: nothing else could ever be looked up.
     pub(crate) fn parse(value: &str) -> Result<Vocabulary, Error> {
-        let bad = |reason: String| Error::Metadata {
-            key: "taut.vocabulary".into(),
-            reason,
-        };
+        let bad = |reason: String| Error::Metadata { key: "taut.vocabulary".into(), reason };
         let mut lines = value.split('\n');
         if lines.next() != Some(PADDING) {
             return Err(bad(format!("line 0 is not {PADDING}")));
@@ -67,12 +64,8 @@ impl Vocabulary {
 }
 
 fn is_word(word: &str) -> bool {
-    let letters = word
-        .bytes()
-        .all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'-'));
-    letters
-        && (1..=MAX_WORD_BYTES).contains(&word.len())
-        && word.split('-').all(|part| !part.is_empty())
+    let letters = word.bytes().all(|b| matches!(b, b'a'..=b'z' | b'0'..=b'9' | b'-'));
+    letters && (1..=MAX_WORD_BYTES).contains(&word.len()) && word.split('-').all(|part| !part.is_empty())
 }
 
 #[cfg(test)]
@@ -83,14 +76,8 @@ mod tests {
     fn rows_follow_the_lines() {
         let v = Vocabulary::parse("<pad>\ncotton\nnon-woven\n11oz").unwrap();
         assert_eq!(v.words(), 3);
-        assert_eq!(
-            [v.index("cotton"), v.index("11oz"), v.index("<pad>")],
-            [Some(1), Some(3), None]
-        );
-        assert_eq!(
-            v.iter().collect::<Vec<_>>(),
-            ["cotton", "non-woven", "11oz"]
-        );
+        assert_eq!([v.index("cotton"), v.index("11oz"), v.index("<pad>")], [Some(1), Some(3), None]);
+        assert_eq!(v.iter().collect::<Vec<_>>(), ["cotton", "non-woven", "11oz"]);
     }
 
     #[test]
@@ -117,11 +104,7 @@ mod tests {
             &long,
         ];
         for value in bad {
-            assert!(
-                Vocabulary::parse(value).is_err(),
-                "{:?}",
-                &value[..value.len().min(40)]
-            );
+            assert!(Vocabulary::parse(value).is_err(), "{:?}", &value[..value.len().min(40)]);
         }
     }
 }

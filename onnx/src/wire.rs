@@ -58,8 +58,7 @@ pub(crate) fn metadata(bytes: &[u8]) -> Result<Vec<Entry<'_>>, Error> {
             }
             (number::MODEL_TRAINING | number::MODEL_FUNCTIONS, _) => {
                 return Err(Error::Graph {
-                    reason: "training graphs and functions do not belong into a generator file"
-                        .into(),
+                    reason: "training graphs and functions do not belong into a generator file".into(),
                 });
             }
             (number::MODEL_GRAPH | number::MODEL_METADATA, None) => {
@@ -109,16 +108,11 @@ fn read_entry(bytes: &[u8]) -> Result<Entry<'_>, Error> {
             reason: format!("the {what} is not UTF-8 at its byte {}", e.valid_up_to()),
         })
     };
-    Ok(Entry {
-        key: utf8(key, "key")?,
-        value: utf8(value, "value")?,
-    })
+    Ok(Entry { key: utf8(key, "key")?, value: utf8(value, "value")? })
 }
 
 fn not_onnx(reason: &str) -> Error {
-    Error::NotOnnx {
-        reason: reason.into(),
-    }
+    Error::NotOnnx { reason: reason.into() }
 }
 
 /// Reads the fields of one protobuf message.
@@ -132,19 +126,11 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn file(bytes: &'a [u8]) -> Self {
-        Reader {
-            bytes,
-            at: 0,
-            whole: true,
-        }
+        Reader { bytes, at: 0, whole: true }
     }
 
     fn nested(bytes: &'a [u8]) -> Self {
-        Reader {
-            bytes,
-            at: 0,
-            whole: false,
-        }
+        Reader { bytes, at: 0, whole: false }
     }
 
     /// The next field: its number and, where it has a length, its bytes. None at the end.
@@ -156,9 +142,7 @@ impl<'a> Reader<'a> {
         let tag = self.varint(start)?;
         let (number, wire_type) = (tag >> 3, tag & 7);
         if number == 0 || number > (1 << 29) - 1 {
-            return Err(Error::NotOnnx {
-                reason: format!("no protobuf field at byte {start}"),
-            });
+            return Err(Error::NotOnnx { reason: format!("no protobuf field at byte {start}") });
         }
         let value = match wire_type {
             0 => {
@@ -178,9 +162,7 @@ impl<'a> Reader<'a> {
                 None
             }
             _ => {
-                return Err(Error::NotOnnx {
-                    reason: format!("no protobuf field at byte {start}"),
-                });
+                return Err(Error::NotOnnx { reason: format!("no protobuf field at byte {start}") });
             }
         };
         Ok(Some((number, value)))
@@ -195,9 +177,7 @@ impl<'a> Reader<'a> {
                 return Ok(value);
             }
         }
-        Err(Error::NotOnnx {
-            reason: format!("a number of more than 64 bits at byte {start}"),
-        })
+        Err(Error::NotOnnx { reason: format!("a number of more than 64 bits at byte {start}") })
     }
 
     fn take(&mut self, length: u64, start: usize) -> Result<&'a [u8], Error> {
@@ -205,14 +185,9 @@ impl<'a> Reader<'a> {
         if length > left as u64 {
             let missing = length - left as u64;
             return Err(if self.whole {
-                Error::Truncated {
-                    offset: start,
-                    missing,
-                }
+                Error::Truncated { offset: start, missing }
             } else {
-                Error::NotOnnx {
-                    reason: "a field is longer than the message around it".into(),
-                }
+                Error::NotOnnx { reason: "a field is longer than the message around it".into() }
             });
         }
         // fits usize: it is at most `left`
@@ -237,26 +212,14 @@ mod tests {
     fn reads_metadata() {
         let entry = [field(1, b"key"), field(2, b"value")].concat();
         let file = [vec![0x08, 0x08], field(14, &entry), field(7, &[])].concat();
-        assert_eq!(
-            metadata(&file).unwrap(),
-            [Entry {
-                key: "key",
-                value: "value"
-            }]
-        );
+        assert_eq!(metadata(&file).unwrap(), [Entry { key: "key", value: "value" }]);
     }
 
     #[test]
     fn names_the_place_of_the_cut() {
         let file = [vec![0x08, 0x08], field(7, &field(2, b"a long name"))].concat();
         let cut = &file[..file.len() - 3];
-        assert_eq!(
-            metadata(cut),
-            Err(Error::Truncated {
-                offset: 2,
-                missing: 3
-            })
-        );
+        assert_eq!(metadata(cut), Err(Error::Truncated { offset: 2, missing: 3 }));
         assert!(matches!(metadata(&[]), Err(Error::NotOnnx { .. })));
     }
 
@@ -289,12 +252,7 @@ mod tests {
 
     #[test]
     fn refuses_other_files() {
-        for file in [
-            &b"\x89PNG\r\n\x1a\n"[..],
-            b"#!/bin/sh\n",
-            &[0xff; 40],
-            &[0; 40],
-        ] {
+        for file in [&b"\x89PNG\r\n\x1a\n"[..], b"#!/bin/sh\n", &[0xff; 40], &[0; 40]] {
             assert!(metadata(file).is_err());
         }
     }

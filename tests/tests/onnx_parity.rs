@@ -13,20 +13,14 @@ const TOLERANCE: f32 = 1e-5;
 const WORDS: usize = 3000;
 
 fn parts() -> (Generator, WordTable) {
-    (
-        fixture::seasoned_generator(16, 1, 6).expect("width"),
-        fixture::word_table(WORDS, 2),
-    )
+    (fixture::seasoned_generator(16, 1, 6).expect("width"), fixture::word_table(WORDS, 2))
 }
 
 fn feed(input: &ParityInput) -> TVec<TValue> {
     let batch = input.batch().expect("fits");
-    let tensor =
-        |shape: &[usize], v: &[f32]| Tensor::from_shape(shape, v).expect("shape").into_tvalue();
+    let tensor = |shape: &[usize], v: &[f32]| Tensor::from_shape(shape, v).expect("shape").into_tvalue();
     tvec!(
-        Tensor::from_shape(&[batch, 16], &input.tokens)
-            .expect("shape")
-            .into_tvalue(),
+        Tensor::from_shape(&[batch, 16], &input.tokens).expect("shape").into_tvalue(),
         tensor(&[batch, 16], &input.weights),
         tensor(&[batch, 128], &input.noise),
         tensor(&[batch, 1, 32, 32], &input.pin_distance),
@@ -47,10 +41,7 @@ fn tract_agrees_with_burn_on_the_rounded_weights() -> TractResult<()> {
     let (generator, words) = parts();
     let bytes = export(&generator, &words, &ExportMeta::default()).expect("export");
     let start = Instant::now();
-    let model = tract_onnx::onnx()
-        .model_for_read(&mut Cursor::new(&bytes))?
-        .into_optimized()?
-        .into_runnable()?;
+    let model = tract_onnx::onnx().model_for_read(&mut Cursor::new(&bytes))?.into_optimized()?.into_runnable()?;
     let load = start.elapsed();
     for (batch, seed) in [(1, 1), (1, 2), (5, 3)] {
         let input = fixture::input(batch, WORDS, seed);
@@ -58,15 +49,9 @@ fn tract_agrees_with_burn_on_the_rounded_weights() -> TractResult<()> {
         let tract = model.run(feed(&input))?;
         assert_eq!(tract[0].shape(), [batch, 4, 32, 32]);
         assert_eq!(tract[1].shape(), [batch, 5]);
-        let (field, fabric) = (
-            worst(&tract[0], &burn.field),
-            worst(&tract[1], &burn.fabric),
-        );
+        let (field, fabric) = (worst(&tract[0], &burn.field), worst(&tract[1], &burn.fabric));
         println!("batch {batch}: largest difference of field {field:.1e}, fabric {fabric:.1e}");
-        assert!(
-            field <= TOLERANCE && fabric <= TOLERANCE,
-            "field {field}, fabric {fabric}"
-        );
+        assert!(field <= TOLERANCE && fabric <= TOLERANCE, "field {field}, fabric {fabric}");
         let spread = burn.field.iter().fold(0.0f32, |m, v| m.max(v.abs()));
         assert!(spread > 0.2, "the field says something: {spread}");
     }
@@ -77,11 +62,7 @@ fn tract_agrees_with_burn_on_the_rounded_weights() -> TractResult<()> {
             model.run(values).map(|_| start.elapsed())
         })
         .collect::<TractResult<Vec<_>>>()?;
-    println!(
-        "{} bytes, load {load:.1?}, run of batch 1 {:.2?} at best",
-        bytes.len(),
-        best.iter().min().expect("20")
-    );
+    println!("{} bytes, load {load:.1?}, run of batch 1 {:.2?} at best", bytes.len(), best.iter().min().expect("20"));
     Ok(())
 }
 
@@ -92,17 +73,11 @@ fn the_same_inputs_give_the_same_bytes() -> TractResult<()> {
     let input = fixture::input(1, WORDS, 4);
     let mut answers = Vec::new();
     for _ in 0..2 {
-        let model = tract_onnx::onnx()
-            .model_for_read(&mut Cursor::new(&bytes))?
-            .into_optimized()?
-            .into_runnable()?;
+        let model = tract_onnx::onnx().model_for_read(&mut Cursor::new(&bytes))?.into_optimized()?.into_runnable()?;
         let out = model.run(feed(&input))?;
         answers.push(
             out.iter()
-                .map(|o| {
-                    o.to_plain_array_view::<f32>()
-                        .map(|a| a.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
-                })
+                .map(|o| o.to_plain_array_view::<f32>().map(|a| a.iter().map(|x| x.to_bits()).collect::<Vec<_>>()))
                 .collect::<TractResult<Vec<_>>>()?,
         );
     }

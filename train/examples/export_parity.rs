@@ -14,19 +14,12 @@ fn write(folder: PathBuf) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let generator = fixture::seasoned_generator(16, 1, 6)?;
     let words = fixture::word_table(WORDS, 2);
-    let meta = ExportMeta {
-        model_name: "parity".into(),
-        ..Default::default()
-    };
+    let meta = ExportMeta { model_name: "parity".into(), ..Default::default() };
     let bytes = export(&generator, &words, &meta)?;
     std::fs::write(folder.join("generator.onnx"), &bytes)?;
     println!("generator.onnx: {} bytes", bytes.len());
     for (name, batch) in [("sample_1.json", 1), ("sample_5.json", 5)] {
-        let sample = run_rounded(
-            &generator,
-            &words,
-            &fixture::input(batch, WORDS, batch as u64),
-        )?;
+        let sample = run_rounded(&generator, &words, &fixture::input(batch, WORDS, batch as u64))?;
         std::fs::write(folder.join(name), serde_json::to_vec(&sample)?)?;
         println!("{name}: batch of {batch}");
     }

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use taut_train::image::{
-    AugmentBatch, AugmentConfig, RenderConfig, Renderer, SheetLayout, available_threads, nmse,
-    psnr, ssim, write_sheet,
+    AugmentBatch, AugmentConfig, RenderConfig, Renderer, SheetLayout, available_threads, nmse, psnr, ssim, write_sheet,
 };
 
 const GRID: usize = 32;
@@ -23,22 +22,14 @@ fn sheet(sag: f32) -> Vec<f32> {
             let v = row as f32 / (GRID - 1) as f32;
             let drop = sag * (1.0 - s * s) * (1.0 - v) * (1.0 - 0.6 * v);
             let depth = sag * v * (0.15 * (6.0 * s).cos() + 0.1 * (14.0 * s).sin());
-            positions.extend([
-                0.5 + 0.5 * s * (1.0 - 0.5 * sag * v),
-                -(1.0 + 0.2 * sag) * v - drop,
-                depth,
-            ]);
+            positions.extend([0.5 + 0.5 * s * (1.0 - 0.5 * sag * v), -(1.0 + 0.2 * sag) * v - drop, depth]);
         }
     }
     positions
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = PathBuf::from(
-        std::env::args()
-            .nth(1)
-            .ok_or("give the name of the PNG to write")?,
-    );
+    let path = PathBuf::from(std::env::args().nth(1).ok_or("give the name of the PNG to write")?);
     let config = RenderConfig::default();
     let channels = config.channels.clone();
     let renderer = Renderer::new(config, GRID, GRID)?;
@@ -46,16 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let images = renderer.render_batch(&positions, available_threads())?;
     let augmentations = AugmentBatch::draw(&AugmentConfig::default(), &channels, 7, 0, 2)?;
     let augmented = augmentations.apply(&images, available_threads())?;
-    write_sheet(
-        &path,
-        &images,
-        &augmented,
-        SheetLayout {
-            channels: channels.len(),
-            pairs_per_row: 1,
-            zoom: 4,
-        },
-    )?;
+    write_sheet(&path, &images, &augmented, SheetLayout { channels: channels.len(), pairs_per_row: 1, zoom: 4 })?;
     let (flat, sagging) = images.split_at(renderer.image_len());
     println!(
         "flat against sagging: PSNR {:.1} dB, SSIM {:.3}, NMSE {:.3}",

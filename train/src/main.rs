@@ -24,7 +24,9 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Program::parse().command {
-        Command::Run(args) => gan::run(&args).map_err(|e| (e.to_string(), matches!(e, gan::TrainError::Interrupted { .. }))),
+        Command::Run(args) => {
+            gan::run(&args).map_err(|e| (e.to_string(), matches!(e, gan::TrainError::Interrupted { .. })))
+        }
         Command::Words(command) => words::command::run(&command).map_err(|e| (e.to_string(), false)),
     };
     match result {

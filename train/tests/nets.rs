@@ -4,9 +4,7 @@ use burn::Tensor;
 use burn::module::Module;
 use burn::tensor::{Device, TensorData};
 use taut_train::nets::init::SplitMix64;
-use taut_train::nets::{
-    Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput,
-};
+use taut_train::nets::{Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput};
 
 fn random<const D: usize>(shape: [usize; D], seed: u64, device: &Device) -> Tensor<D> {
     let mut s = SplitMix64::new(seed);
@@ -20,24 +18,11 @@ fn host<const D: usize>(t: Tensor<D>) -> Vec<f32> {
 
 fn generate(g: &Generator, batch: usize, seed: u64, device: &Device) -> GeneratorOutput {
     let pins = random([batch, 1, 32, 32], seed + 2, device).abs();
-    g.forward(
-        random([batch, 1024], seed, device),
-        random([batch, 128], seed + 1, device),
-        pins,
-    )
+    g.forward(random([batch, 1024], seed, device), random([batch, 128], seed + 1, device), pins)
 }
 
-fn judge(
-    d: &Discriminator,
-    channels: usize,
-    batch: usize,
-    seed: u64,
-    device: &Device,
-) -> Tensor<2> {
-    d.forward(
-        random([batch, channels, 64, 64], seed, device),
-        random([batch, 1024], seed + 1, device),
-    )
+fn judge(d: &Discriminator, channels: usize, batch: usize, seed: u64, device: &Device) -> Tensor<2> {
+    d.forward(random([batch, channels, 64, 64], seed, device), random([batch, 1024], seed + 1, device))
 }
 
 #[test]
@@ -46,10 +31,7 @@ fn the_generator_gives_a_field_and_a_fabric_in_tanh_range() {
     for width in [1, 4, 16] {
         let g = GeneratorConfig { width }.init(3, &device).expect("width");
         let out = generate(&g, 3, 1, &device);
-        assert_eq!(
-            (out.field.dims(), out.fabric.dims()),
-            ([3, 4, 32, 32], [3, 5])
-        );
+        assert_eq!((out.field.dims(), out.fabric.dims()), ([3, 4, 32, 32], [3, 5]));
         for v in host(out.field).into_iter().chain(host(out.fabric)) {
             assert!((-1.0..=1.0).contains(&v), "{v}");
         }
@@ -78,25 +60,14 @@ const GENERATOR_PARAMETERS: usize = {
 fn the_fabric_hears_the_words_and_not_the_noise() {
     let device = Device::flex();
     let g = GeneratorConfig::default().init(5, &device).expect("width");
-    let (words, pins) = (
-        random([1, 1024], 1, &device),
-        random([1, 1, 32, 32], 2, &device).abs(),
-    );
+    let (words, pins) = (random([1, 1024], 1, &device), random([1, 1, 32, 32], 2, &device).abs());
     let a = g.forward(words.clone(), random([1, 128], 3, &device), pins.clone());
     let b = g.forward(words, random([1, 128], 4, &device), pins.clone());
-    let c = g.forward(
-        random([1, 1024], 9, &device),
-        random([1, 128], 4, &device),
-        pins.clone(),
-    );
+    let c = g.forward(random([1, 1024], 9, &device), random([1, 128], 4, &device), pins.clone());
     assert_eq!(host(a.fabric.clone()), host(b.fabric));
     assert_ne!(host(a.fabric), host(c.fabric));
     assert_ne!(host(a.field), host(b.field.clone()));
-    let d = g.forward(
-        random([1, 1024], 9, &device),
-        random([1, 128], 4, &device),
-        pins.mul_scalar(0.5),
-    );
+    let d = g.forward(random([1, 1024], 9, &device), random([1, 128], 4, &device), pins.mul_scalar(0.5));
     assert_ne!(host(c.field), host(d.field), "the pins matter");
 }
 
@@ -104,24 +75,11 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {
-        let g = GeneratorConfig { width: 4 }
-            .init(seed, &device)
-            .expect("width");
-        let d = DiscriminatorConfig {
-            width: 4,
-            ..Default::default()
-        }
-        .init(seed, &device)
-        .expect("width");
-        (
-            host(generate(&g, 2, 8, &device).field),
-            host(judge(&d, 1, 2, 8, &device)),
-        )
+        let g = GeneratorConfig { width: 4 }.init(seed, &device).expect("width");
+        let d = DiscriminatorConfig { width: 4, ..Default::default() }.init(seed, &device).expect("width");
+        (host(generate(&g, 2, 8, &device).field), host(judge(&d, 1, 2, 8, &device)))
     };
-    let (a, b) = (
-        outputs(11),
-        std::thread::scope(|s| s.spawn(|| outputs(11)).join().expect("thread")),
-    );
+    let (a, b) = (outputs(11), std::thread::scope(|s| s.spawn(|| outputs(11)).join().expect("thread")));
     assert_eq!(a, b, "the same seed, another thread");
     let c = outputs(12);
     assert_ne!(a.0, c.0);
@@ -132,11 +90,7 @@ fn a_seed_is_a_network() {
 fn the_discriminator_judges_in_every_configuration() {
     let device = Device::flex();
     for (conditional, picture_channels) in [(false, 1), (false, 3), (true, 1)] {
-        let config = DiscriminatorConfig {
-            conditional,
-            picture_channels,
-            ..Default::default()
-        };
+        let config = DiscriminatorConfig { conditional, picture_channels, ..Default::default() };
         let d = config.init(1, &device).expect("configuration");
         println!("discriminator parameters, {config:?}: {}", d.num_params());
         let p = judge(&d, picture_channels, 3, 4, &device);
@@ -149,23 +103,10 @@ fn the_discriminator_judges_in_every_configuration() {
 fn only_a_conditional_discriminator_hears_the_words_and_it_weighs_them_against_the_picture() {
     let device = Device::flex();
     let (a, b) = (random([1, 1024], 5, &device), random([1, 1024], 6, &device));
-    let (x, y) = (
-        random([1, 1, 64, 64], 7, &device),
-        random([1, 1, 64, 64], 8, &device),
-    );
-    let plain = DiscriminatorConfig::default()
-        .init(1, &device)
-        .expect("configuration");
-    assert_eq!(
-        host(plain.forward(x.clone(), a.clone())),
-        host(plain.forward(x.clone(), b.clone()))
-    );
-    let d = DiscriminatorConfig {
-        conditional: true,
-        ..Default::default()
-    }
-    .init(1, &device)
-    .expect("configuration");
+    let (x, y) = (random([1, 1, 64, 64], 7, &device), random([1, 1, 64, 64], 8, &device));
+    let plain = DiscriminatorConfig::default().init(1, &device).expect("configuration");
+    assert_eq!(host(plain.forward(x.clone(), a.clone())), host(plain.forward(x.clone(), b.clone())));
+    let d = DiscriminatorConfig { conditional: true, ..Default::default() }.init(1, &device).expect("configuration");
     let logit = |p: &Tensor<4>, w: &Tensor<2>| {
         let p = f64::from(host(d.forward(p.clone(), w.clone()))[0]);
         (p / (1.0 - p)).ln()
@@ -173,33 +114,22 @@ fn only_a_conditional_discriminator_hears_the_words_and_it_weighs_them_against_t
     // Were picture and words only added, changing the words would move the logit alike for both pictures.
     let (on_x, on_y) = (logit(&x, &a) - logit(&x, &b), logit(&y, &a) - logit(&y, &b));
     assert!(on_x.abs() > 1e-5, "the words matter: {on_x}");
-    assert!(
-        (on_x - on_y).abs() > 1e-3 * on_x.abs(),
-        "{on_x} against {on_y}"
-    );
+    assert!((on_x - on_y).abs() > 1e-3 * on_x.abs(), "{on_x} against {on_y}");
 }
 
 #[test]
 fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }
-        .init(2, &device)
-        .expect("width");
+    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
     let statistics = |g: &Generator| {
         let g = g.valid();
-        (
-            host(g.second.norm.running_mean.value()),
-            host(g.fifth.norm.running_var.value()),
-        )
+        (host(g.second.norm.running_mean.value()), host(g.fifth.norm.running_var.value()))
     };
     let before = statistics(&g);
     assert!(before.0.iter().all(|m| *m == 0.0) && before.1.iter().all(|v| *v == 1.0));
     generate(&g, 8, 1, &device);
     // The input of the second layer's normalisation, by hand: the running mean moves a tenth of the way to its mean.
-    let v = Tensor::cat(
-        vec![random([8, 1024], 1, &device), random([8, 128], 2, &device)],
-        1,
-    );
+    let v = Tensor::cat(vec![random([8, 1024], 1, &device), random([8, 128], 2, &device)], 1);
     let a1 = burn::tensor::activation::relu(g.first.forward(v.reshape([8, 1152, 1, 1])));
     let expected = host(a1.mean_dims(&[0, 2, 3]).reshape([32]));
     let after = statistics(&g);
@@ -212,17 +142,10 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     let one = host(generate(&inference, 1, 3, &plain).field);
     let again = host(generate(&inference, 1, 3, &plain).field);
     assert_eq!(one, again);
-    assert_eq!(
-        statistics(&inference),
-        after,
-        "inference leaves the statistics alone"
-    );
+    assert_eq!(statistics(&inference), after, "inference leaves the statistics alone");
     // In inference a sample does not depend on its company.
     let pins = Tensor::cat(vec![random([1, 1, 32, 32], 5, &plain).abs(); 2], 0);
-    let words = Tensor::cat(
-        vec![random([1, 1024], 3, &plain), random([1, 1024], 77, &plain)],
-        0,
-    );
+    let words = Tensor::cat(vec![random([1, 1024], 3, &plain), random([1, 1024], 77, &plain)], 0);
     let noise = Tensor::cat(vec![random([1, 128], 4, &plain); 2], 0);
     let both = host(inference.forward(words, noise, pins).field);
     for (a, b) in one.iter().zip(&both) {
@@ -233,66 +156,37 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
 #[test]
 fn every_weight_of_both_networks_gets_a_gradient() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }
-        .init(2, &device)
-        .expect("width");
+    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
     let out = generate(&g, 4, 1, &device);
-    let loss = out.field.square().mean()
-        + out.fabric.square().mean()
-        + g.squared_weights().mul_scalar(1e-4);
+    let loss = out.field.square().mean() + out.fabric.square().mean() + g.squared_weights().mul_scalar(1e-4);
     let grads = loss.backward();
     let some = |name: &str, grad: Option<Vec<f32>>| {
         let grad = grad.unwrap_or_else(|| panic!("{name} has no gradient"));
-        assert!(
-            grad.iter().any(|x| *x != 0.0) && grad.iter().all(|x| x.is_finite()),
-            "{name}"
-        );
+        assert!(grad.iter().any(|x| *x != 0.0) && grad.iter().all(|x| x.is_finite()), "{name}");
     };
     some("first", g.first.weight.val().grad(&grads).map(host));
     some("skip", g.skip.weight.val().grad(&grads).map(host));
     some("fabric", g.fabric.weight.val().grad(&grads).map(host));
     let layers = [&g.second, &g.third, &g.fourth, &g.fifth, &g.sixth];
-    for (name, layer) in ["second", "third", "fourth", "fifth", "sixth"]
-        .into_iter()
-        .zip(layers)
-    {
-        some(
-            name,
-            layer.deconvolution.weight.val().grad(&grads).map(host),
-        );
+    for (name, layer) in ["second", "third", "fourth", "fifth", "sixth"].into_iter().zip(layers) {
+        some(name, layer.deconvolution.weight.val().grad(&grads).map(host));
         some(name, layer.norm.gamma.val().grad(&grads).map(host));
     }
-    let config = DiscriminatorConfig {
-        width: 4,
-        conditional: true,
-        ..Default::default()
-    };
+    let config = DiscriminatorConfig { width: 4, conditional: true, ..Default::default() };
     let d = config.init(2, &device).expect("configuration");
-    let grads = judge(&d, 1, 4, 6, &device)
-        .sub_scalar(1.0)
-        .square()
-        .mean()
-        .backward();
+    let grads = judge(&d, 1, 4, 6, &device).sub_scalar(1.0).square().mean().backward();
     for (i, m) in d.modules.iter().enumerate() {
-        some(
-            &format!("module {i}"),
-            m.convolution.weight.val().grad(&grads).map(host),
-        );
+        some(&format!("module {i}"), m.convolution.weight.val().grad(&grads).map(host));
     }
     let c = d.condition.as_ref().expect("conditional");
-    some(
-        "projection",
-        c.projection.weight.val().grad(&grads).map(host),
-    );
+    some("projection", c.projection.weight.val().grad(&grads).map(host));
     some("connected", d.connected.weight.val().grad(&grads).map(host));
 }
 
 #[test]
 fn the_sum_of_squares_counts_kernels_and_matrices() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 1 }
-        .init(2, &device)
-        .expect("width");
+    let g = GeneratorConfig { width: 1 }.init(2, &device).expect("width");
     let mut expected = 0.0f64;
     let mut add = |v: Vec<f32>| expected += v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
     add(host(g.first.weight.val()));
@@ -302,8 +196,5 @@ fn the_sum_of_squares_counts_kernels_and_matrices() {
         add(host(l.deconvolution.weight.val()));
     }
     let sum = f64::from(host(g.squared_weights())[0]);
-    assert!(
-        (sum / expected - 1.0).abs() < 1e-5,
-        "{sum} against {expected}"
-    );
+    assert!((sum / expected - 1.0).abs() < 1e-5, "{sum} against {expected}");
 }

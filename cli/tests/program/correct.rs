@@ -9,10 +9,8 @@ use crate::run::{entries, home, succeeds};
 #[test]
 fn the_file_is_one_that_the_cloth_loads() {
     let home = home();
-    let run = succeeds(
-        home.path(),
-        &["correct", "heavy blue denim", "--grid", "12x9", "--out", "denim.taut", "--json"],
-    );
+    let run =
+        succeeds(home.path(), &["correct", "heavy blue denim", "--grid", "12x9", "--out", "denim.taut", "--json"]);
     let told: Value = serde_json::from_str(&run.stdout).expect("JSON");
     let bytes = std::fs::read(home.path().join("denim.taut")).expect("read");
     assert_eq!(told["file"], "denim.taut");
@@ -32,10 +30,7 @@ fn the_file_is_one_that_the_cloth_loads() {
     }
 
     let grid = Grid::new(&GridDef { rows: 12, columns: 9, ..GridDef::default() }).expect("a grid");
-    let def = ClothDef {
-        density_kg_m2: baked.fabric.density_kg_m2,
-        ..ClothDef::default()
-    };
+    let def = ClothDef { density_kg_m2: baked.fabric.density_kg_m2, ..ClothDef::default() };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).expect("a size")];
     let mut cloth = Cloth::create(&grid, &def, &mut block).expect("a cloth");
     assert_eq!(cloth.load_stiffness(&bytes), Ok(baked.fabric));

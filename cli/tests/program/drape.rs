@@ -5,15 +5,8 @@ use serde_json::Value;
 use crate::run::{Run, entries, home, succeeds};
 
 const SMALL: [&str; 8] = ["--grid", "8x10", "--substeps", "4", "--seconds", "0.5", "--size", "1x0.8"];
-const NAMES: [&str; 7] = [
-    "reference",
-    "random",
-    "uniform",
-    "analytic",
-    "uniform_inertia",
-    "analytic_inertia",
-    "generated",
-];
+const NAMES: [&str; 7] =
+    ["reference", "random", "uniform", "analytic", "uniform_inertia", "analytic_inertia", "generated"];
 
 fn drape(folder: &std::path::Path, description: &str, more: &[&str]) -> Run {
     succeeds(folder, &[&["drape", description], &SMALL[..], more].concat())

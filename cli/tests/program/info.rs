@@ -9,9 +9,7 @@ fn a_file_and_the_built_in_generator_tell_the_same() {
     let home = home();
     let path = generator();
     let path = path.to_str().expect("a path");
-    let json = |args: &[&str]| -> Value {
-        serde_json::from_str(&succeeds(home.path(), args).stdout).expect("JSON")
-    };
+    let json = |args: &[&str]| -> Value { serde_json::from_str(&succeeds(home.path(), args).stdout).expect("JSON") };
     let (mut file, mut own) = (json(&["info", path, "--json"]), json(&["info", "--json"]));
     assert_eq!(own["file"], "built in");
     assert_eq!(file["file"], path);

@@ -12,11 +12,8 @@ pub struct Run {
 
 /// Runs the program in a folder.
 pub fn taut(folder: &Path, args: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_taut"))
-        .args(args)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_taut")).args(args).current_dir(folder).output().expect("the program starts");
     Run {
         code: output.status.code(),
         stdout: String::from_utf8(output.stdout).expect("UTF-8"),

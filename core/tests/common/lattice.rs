@@ -44,13 +44,7 @@ pub fn springs(grid: &Grid) -> Vec<Spring> {
                 if row + rows < m && (0..n as isize).contains(&to) {
                     let (a, b) = (row * n + column, (row + rows) * n + to as usize);
                     let k = 0.0;
-                    all.push(Spring {
-                        a,
-                        b,
-                        family,
-                        rest_m,
-                        k,
-                    });
+                    all.push(Spring { a, b, family, rest_m, k });
                 }
             };
             add(0, 1, Family::Weft, u);
@@ -86,10 +80,7 @@ pub fn measure(cloth: &mut Cloth<'_>) -> Lattice {
     let force_z = |cloth: &mut Cloth<'_>, from: &[Vector3<f32>]| -> Vec<f64> {
         put(cloth, from);
         assert_eq!(cloth.step().expect("a stiffness").0, 0);
-        velocities(cloth)
-            .iter()
-            .map(|v| f64::from(v.z) / dt)
-            .collect()
+        velocities(cloth).iter().map(|v| f64::from(v.z) / dt).collect()
     };
     // flat: no spring pulls along z, so the acceleration is weight / M
     let inverse: Vec<f64> = force_z(cloth, &flat).iter().map(|a| a / weight).collect();
@@ -99,17 +90,8 @@ pub fn measure(cloth: &mut Cloth<'_>) -> Lattice {
     let mut seen = vec![[f64::NAN; 2]; all.len()];
     for color in 0..25 {
         let lifted = |i: usize| (i / n) % 5 == color / 5 && (i % n) % 5 == color % 5;
-        let from: Vec<_> = flat
-            .iter()
-            .enumerate()
-            .map(|(i, p)| {
-                if lifted(i) {
-                    Vector3::new(p.x, p.y, h)
-                } else {
-                    *p
-                }
-            })
-            .collect();
+        let from: Vec<_> =
+            flat.iter().enumerate().map(|(i, p)| if lifted(i) { Vector3::new(p.x, p.y, h) } else { *p }).collect();
         let a = force_z(cloth, &from);
         for (s, seen) in all.iter().zip(&mut seen) {
             for (end, (up, down)) in [(s.a, s.b), (s.b, s.a)].into_iter().enumerate() {
@@ -129,17 +111,10 @@ pub fn measure(cloth: &mut Cloth<'_>) -> Lattice {
             s.k = 0.0;
         } else if !ab.is_nan() && !ba.is_nan() {
             let tolerance = 2e-4 * ab.abs().max(ba.abs()) + 1e-4 * weight.abs() / f64::from(h);
-            assert!(
-                (ab - ba).abs() <= tolerance,
-                "{m} x {n}: {s:?} pulls with {ab} and {ba}"
-            );
+            assert!((ab - ba).abs() <= tolerance, "{m} x {n}: {s:?} pulls with {ab} and {ba}");
         }
     }
-    Lattice {
-        springs: all,
-        inverse,
-        flat: flat.iter().map(|p| p.cast()).collect(),
-    }
+    Lattice { springs: all, inverse, flat: flat.iter().map(|p| p.cast()).collect() }
 }
 
 impl Lattice {
@@ -170,9 +145,7 @@ impl Lattice {
         let shift = below.iter().fold(0.0, |a: f64, b| a.max(*b));
         let root: Vec<f64> = self.inverse.iter().map(|w| w.sqrt()).collect();
         let mut random = super::Random::new(seed);
-        let mut y: Vec<Vector3<f64>> = (0..shape.len())
-            .map(|_| random.vector(1.0).cast())
-            .collect();
+        let mut y: Vec<Vector3<f64>> = (0..shape.len()).map(|_| random.vector(1.0).cast()).collect();
         let mut value = 0.0;
         for _ in 0..400 {
             let norm = y.iter().map(|v| v.norm_squared()).sum::<f64>().sqrt();

@@ -8,13 +8,7 @@ use taut::{Cloth, ClothDef, Families, Grid, GridDef, Vector3, noise};
 
 /// A grid of square or other cells.
 pub fn grid(rows: u32, columns: u32, width_m: f32, height_m: f32, families: Families) -> Grid {
-    let def = GridDef {
-        rows,
-        columns,
-        width_m,
-        height_m,
-        families,
-    };
+    let def = GridDef { rows, columns, width_m, height_m, families };
     Grid::new(&def).expect("a valid grid")
 }
 
@@ -125,9 +119,7 @@ pub fn put(cloth: &mut Cloth<'_>, places: &[Vector3<f32>]) {
 /// Gives every particle a random velocity.
 pub fn stir(cloth: &mut Cloth<'_>, random: &mut Random, speed_m_s: f32) {
     for i in 0..cloth.grid().particles() {
-        cloth
-            .set_velocity(i, random.vector(speed_m_s))
-            .expect("a velocity within reach");
+        cloth.set_velocity(i, random.vector(speed_m_s)).expect("a velocity within reach");
     }
 }
 
@@ -141,10 +133,7 @@ pub fn steps(cloth: &mut Cloth<'_>, frames: usize) {
 /// The bits of positions and velocities.
 pub fn bits(cloth: &Cloth<'_>) -> Vec<u32> {
     let (x, v) = (positions(cloth), velocities(cloth));
-    x.iter()
-        .chain(&v)
-        .flat_map(|p| p.iter().map(|n| n.to_bits()).collect::<Vec<_>>())
-        .collect()
+    x.iter().chain(&v).flat_map(|p| p.iter().map(|n| n.to_bits()).collect::<Vec<_>>()).collect()
 }
 
 pub fn snapshot(cloth: &mut Cloth<'_>) -> Vec<u8> {
@@ -157,9 +146,5 @@ pub fn snapshot(cloth: &mut Cloth<'_>) -> Vec<u8> {
 /// a is b within the relative `tolerance`.
 #[track_caller]
 pub fn near(a: f64, b: f64, tolerance: f64, what: &str) {
-    assert!(
-        (a - b).abs() <= tolerance * b.abs(),
-        "{what}: {a} instead of {b}, off by {:.2e}",
-        (a / b - 1.0).abs()
-    );
+    assert!((a - b).abs() <= tolerance * b.abs(), "{what}: {a} instead of {b}, off by {:.2e}", (a / b - 1.0).abs());
 }

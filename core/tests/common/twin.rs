@@ -5,20 +5,8 @@ use super::lattice::{Family, Lattice};
 use taut::{ClothDef, Grid, Vector3};
 
 /// The springs of a particle in the order in which they are summed: rows and columns to the other end.
-pub const ORDER: [(isize, isize); 12] = [
-    (0, 1),
-    (0, -1),
-    (1, 0),
-    (-1, 0),
-    (1, 1),
-    (-1, -1),
-    (1, -1),
-    (-1, 1),
-    (0, 2),
-    (0, -2),
-    (2, 0),
-    (-2, 0),
-];
+pub const ORDER: [(isize, isize); 12] =
+    [(0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, -1), (1, -1), (-1, 1), (0, 2), (0, -2), (2, 0), (-2, 0)];
 
 #[derive(Clone, Debug)]
 pub struct Pin {
@@ -62,11 +50,7 @@ impl Twin {
                     _ => (3, grid.has_bend()),
                 };
                 let at = |place: isize| field[(channel * m * n + place) as usize];
-                if on {
-                    0.5 * (at(i) + at(r * n + c))
-                } else {
-                    0.0
-                }
+                if on { 0.5 * (at(i) + at(r * n + c)) } else { 0.0 }
             })
         });
         let mass = {
@@ -111,11 +95,7 @@ impl Twin {
     pub fn pin(&mut self, particle: usize) {
         self.inverse[particle] = 0.0;
         let here = self.x[particle];
-        self.pins.push(Pin {
-            particle,
-            from: here,
-            to: here,
-        });
+        self.pins.push(Pin { particle, from: here, to: here });
     }
 
     /// F_inside of a particle (eq. 1): sum of k (l - l0) d / l, written as k (1 - l0 / l) d.
@@ -123,11 +103,7 @@ impl Twin {
         let n = self.grid.columns() as isize;
         let (u, v) = (self.grid.rest_u(), self.grid.rest_v());
         let diagonal = (u * u + v * v).sqrt();
-        let floor = if self.def.compression_limit {
-            -1.0
-        } else {
-            f32::NEG_INFINITY
-        };
+        let floor = if self.def.compression_limit { -1.0 } else { f32::NEG_INFINITY };
         let mut f = Vector3::zeros();
         for ((rows, columns), k) in ORDER.into_iter().zip(self.k[i]) {
             if k == 0.0 {
@@ -150,9 +126,7 @@ impl Twin {
     pub fn substep(&mut self, share: f32) {
         let dt = self.dt;
         let g = Vector3::from(self.def.gravity_m_s2.map(|g| self.mass * g));
-        let forces: Vec<_> = (0..self.x.len())
-            .map(|i| self.inside(i) + g + self.pull[i])
-            .collect();
+        let forces: Vec<_> = (0..self.x.len()).map(|i| self.inside(i) + g + self.pull[i]).collect();
         let limit = if self.def.speed_limit > 0.0 {
             self.def.speed_limit * self.grid.rest_u().min(self.grid.rest_v()) / dt
         } else {
@@ -171,11 +145,7 @@ impl Twin {
         }
         for p in &self.pins {
             let way = p.to - p.from;
-            self.x[p.particle] = if share < 1.0 {
-                p.from + way * share
-            } else {
-                p.to
-            };
+            self.x[p.particle] = if share < 1.0 { p.from + way * share } else { p.to };
             self.v[p.particle] = way * self.def.rate_hz;
         }
     }
@@ -193,7 +163,6 @@ impl Twin {
 
     pub fn bits(&self) -> Vec<u32> {
         let all = self.x.iter().chain(&self.v);
-        all.flat_map(|p| p.iter().map(|n| n.to_bits()).collect::<Vec<_>>())
-            .collect()
+        all.flat_map(|p| p.iter().map(|n| n.to_bits()).collect::<Vec<_>>()).collect()
     }
 }

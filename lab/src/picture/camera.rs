@@ -23,20 +23,12 @@ impl View {
         let (sin_pitch, cos_pitch) = pitch.to_radians().sin_cos();
         let toward = [sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch];
         let right = normalized(cross([0.0, 1.0, 0.0], toward)).unwrap_or([1.0, 0.0, 0.0]);
-        Self {
-            right,
-            up: cross(toward, right),
-            toward,
-        }
+        Self { right, up: cross(toward, right), toward }
     }
 
     /// Metres to the right, metres up, metres toward the viewer.
     pub fn coordinates(&self, point: Vec3) -> Vec3 {
-        [
-            dot(point, self.right),
-            dot(point, self.up),
-            dot(point, self.toward),
-        ]
+        [dot(point, self.right), dot(point, self.up), dot(point, self.toward)]
     }
 }
 
@@ -54,10 +46,7 @@ impl Frame {
     pub fn around(view: &View, points: &[Vec3]) -> Option<Self> {
         points.iter().fold(None, |frame: Option<Self>, &point| {
             let [x, y, _] = view.coordinates(point);
-            let at = Self {
-                min: [x, y],
-                max: [x, y],
-            };
+            let at = Self { min: [x, y], max: [x, y] };
             Some(frame.map_or(at, |frame| frame.union(&at)))
         })
     }
@@ -80,10 +69,7 @@ impl Frame {
 
     /// The box grown by `margin` metres on every side.
     pub fn grown(&self, margin: f32) -> Self {
-        Self {
-            min: self.min.map(|v| v - margin),
-            max: self.max.map(|v| v + margin),
-        }
+        Self { min: self.min.map(|v| v - margin), max: self.max.map(|v| v + margin) }
     }
 
     /// Width and height, metres.
@@ -108,16 +94,8 @@ impl Camera {
         let size = frame.size();
         let free = window.map(|side| (side - 2.0 * margin as f32).max(1.0));
         let pixels_per_metre = (free[0] / size[0].max(1e-6)).min(free[1] / size[1].max(1e-6));
-        let center = [
-            0.5 * (frame.min[0] + frame.max[0]),
-            0.5 * (frame.min[1] + frame.max[1]),
-        ];
-        Self {
-            view,
-            center,
-            pixels_per_metre,
-            window,
-        }
+        let center = [0.5 * (frame.min[0] + frame.max[0]), 0.5 * (frame.min[1] + frame.max[1])];
+        Self { view, center, pixels_per_metre, window }
     }
 
     /// The directions it looks along.
@@ -154,11 +132,7 @@ mod tests {
     #[test]
     fn view_is_right_handed_and_orthonormal() {
         let view = View::new(25.0, 10.0);
-        for (a, b) in [
-            (view.right, view.up),
-            (view.up, view.toward),
-            (view.toward, view.right),
-        ] {
+        for (a, b) in [(view.right, view.up), (view.up, view.toward), (view.toward, view.right)] {
             assert!(dot(a, b).abs() < 1e-6);
             assert!((dot(a, a) - 1.0).abs() < 1e-6);
         }
@@ -169,35 +143,17 @@ mod tests {
     #[test]
     fn fitted_frame_touches_the_margin() {
         let view = View::new(0.0, 0.0);
-        let frame = Frame {
-            min: [-1.0, -2.0],
-            max: [1.0, 0.0],
-        };
+        let frame = Frame { min: [-1.0, -2.0], max: [1.0, 0.0] };
         let camera = Camera::fit(view, &frame, 120, 300, 10);
         let corner = camera.project([-1.0, 0.0, 5.0]);
-        assert!(
-            (corner[0] - 10.0).abs() < 1e-3 && (corner[1] - 100.0).abs() < 1e-3,
-            "{corner:?}"
-        );
+        assert!((corner[0] - 10.0).abs() < 1e-3 && (corner[1] - 100.0).abs() < 1e-3, "{corner:?}");
         assert!((camera.pixels_per_metre() - 50.0).abs() < 1e-3);
     }
 
     #[test]
     fn a_far_frame_is_cut_to_its_limit() {
-        let limit = Frame {
-            min: [0.0, 0.0],
-            max: [1.0, 1.0],
-        };
-        let far = Frame {
-            min: [5.0, 0.5],
-            max: [6.0, 9.0],
-        };
-        assert_eq!(
-            far.clamped(&limit),
-            Frame {
-                min: [1.0, 0.5],
-                max: [1.0, 1.0]
-            }
-        );
+        let limit = Frame { min: [0.0, 0.0], max: [1.0, 1.0] };
+        let far = Frame { min: [5.0, 0.5], max: [6.0, 9.0] };
+        assert_eq!(far.clamped(&limit), Frame { min: [1.0, 0.5], max: [1.0, 1.0] });
     }
 }

@@ -13,9 +13,7 @@ pub struct Canvas {
 impl Canvas {
     /// A canvas filled with one colour.
     pub fn new(width: u32, height: u32, background: Srgb) -> Self {
-        Self {
-            image: RgbImage::from_pixel(width, height, Rgb(background)),
-        }
+        Self { image: RgbImage::from_pixel(width, height, Rgb(background)) }
     }
 
     /// Width and height in pixels.
@@ -52,60 +50,15 @@ impl Canvas {
 
     /// Draws the one-pixel border just inside a box.
     pub fn border(&mut self, area: Area, color: Srgb) {
-        let Area {
-            x,
-            y,
-            width,
-            height,
-        } = area;
-        self.fill(
-            Area {
-                x,
-                y,
-                width,
-                height: 1,
-            },
-            color,
-        );
-        self.fill(
-            Area {
-                x,
-                y: y + height - 1,
-                width,
-                height: 1,
-            },
-            color,
-        );
-        self.fill(
-            Area {
-                x,
-                y,
-                width: 1,
-                height,
-            },
-            color,
-        );
-        self.fill(
-            Area {
-                x: x + width - 1,
-                y,
-                width: 1,
-                height,
-            },
-            color,
-        );
+        let Area { x, y, width, height } = area;
+        self.fill(Area { x, y, width, height: 1 }, color);
+        self.fill(Area { x, y: y + height - 1, width, height: 1 }, color);
+        self.fill(Area { x, y, width: 1, height }, color);
+        self.fill(Area { x: x + width - 1, y, width: 1, height }, color);
     }
 
     /// Draws a straight stroke `width` pixels wide with round ends and smooth edges, cut to `clip`.
-    pub fn stroke(
-        &mut self,
-        from: [f32; 2],
-        to: [f32; 2],
-        width: f32,
-        color: Srgb,
-        opacity: f32,
-        clip: Area,
-    ) {
+    pub fn stroke(&mut self, from: [f32; 2], to: [f32; 2], width: f32, color: Srgb, opacity: f32, clip: Area) {
         if !(from[0] + from[1] + to[0] + to[1]).is_finite() {
             return;
         }
@@ -115,18 +68,9 @@ impl Canvas {
         for y in clip.rows(from[1].min(to[1]) - reach, from[1].max(to[1]) + reach) {
             for x in clip.columns(from[0].min(to[0]) - reach, from[0].max(to[0]) + reach) {
                 let (dx, dy) = (x as f32 + 0.5 - from[0], y as f32 + 0.5 - from[1]);
-                let t = if square > 0.0 {
-                    ((dx * along[0] + dy * along[1]) / square).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
+                let t = if square > 0.0 { ((dx * along[0] + dy * along[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
                 let distance = (dx - t * along[0]).hypot(dy - t * along[1]);
-                self.blend(
-                    x,
-                    y,
-                    color,
-                    opacity * (0.5 * width + 0.5 - distance).clamp(0.0, 1.0),
-                );
+                self.blend(x, y, color, opacity * (0.5 * width + 0.5 - distance).clamp(0.0, 1.0));
             }
         }
     }
@@ -137,15 +81,7 @@ impl Canvas {
     }
 
     /// Draws a dashed polyline: `dash` pixels drawn, as many left out, the pattern running on through the corners.
-    pub fn dashes(
-        &mut self,
-        points: &[[f32; 2]],
-        dash: f32,
-        width: f32,
-        color: Srgb,
-        opacity: f32,
-        clip: Area,
-    ) {
+    pub fn dashes(&mut self, points: &[[f32; 2]], dash: f32, width: f32, color: Srgb, opacity: f32, clip: Area) {
         let mut travelled = 0.0f32;
         for pair in points.windows(2) {
             let (a, b) = (pair[0], pair[1]);
@@ -154,20 +90,11 @@ impl Canvas {
             if !length.is_finite() || length > 1e5 || length == 0.0 {
                 continue;
             }
-            let at = |s: f32| {
-                [
-                    a[0] + (b[0] - a[0]) * s / length,
-                    a[1] + (b[1] - a[1]) * s / length,
-                ]
-            };
+            let at = |s: f32| [a[0] + (b[0] - a[0]) * s / length, a[1] + (b[1] - a[1]) * s / length];
             let mut s = 0.0;
             while s < length {
                 let phase = (travelled + s) % (2.0 * dash);
-                let rest = if phase < dash {
-                    dash - phase
-                } else {
-                    2.0 * dash - phase
-                };
+                let rest = if phase < dash { dash - phase } else { 2.0 * dash - phase };
                 // The floor on the step ends the loop when rounding leaves no rest.
                 let end = (s + rest.max(0.01)).min(length);
                 if phase < dash {
@@ -210,12 +137,7 @@ mod tests {
 
     const WHITE: Srgb = [255; 3];
     const BLACK: Srgb = [0; 3];
-    const ALL: Area = Area {
-        x: 0,
-        y: 0,
-        width: 20,
-        height: 20,
-    };
+    const ALL: Area = Area { x: 0, y: 0, width: 20, height: 20 };
 
     fn colors(canvas: Canvas) -> impl Fn(u32, u32) -> Srgb {
         let image = canvas.into_image();
@@ -225,23 +147,10 @@ mod tests {
     #[test]
     fn nothing_is_drawn_outside_the_clip_or_the_canvas() {
         let mut canvas = Canvas::new(20, 20, WHITE);
-        let clip = Area {
-            x: 5,
-            y: 5,
-            width: 5,
-            height: 5,
-        };
+        let clip = Area { x: 5, y: 5, width: 5, height: 5 };
         canvas.stroke([-1e9, 7.0], [1e9, 7.0], 3.0, BLACK, 1.0, clip);
         canvas.disc([f32::NAN, 1.0], 4.0, BLACK, ALL);
-        canvas.fill(
-            Area {
-                x: 18,
-                y: -3,
-                width: 100,
-                height: 4,
-            },
-            BLACK,
-        );
+        canvas.fill(Area { x: 18, y: -3, width: 100, height: 4 }, BLACK);
         let color = colors(canvas);
         for y in 0..20 {
             for x in 0..20 {
@@ -256,14 +165,7 @@ mod tests {
     #[test]
     fn dashes_leave_gaps_and_end() {
         let mut canvas = Canvas::new(20, 20, WHITE);
-        canvas.dashes(
-            &[[0.0, 5.5], [20.0, 5.5], [20.0, 5.5], [f32::INFINITY, 0.0]],
-            4.0,
-            1.0,
-            BLACK,
-            1.0,
-            ALL,
-        );
+        canvas.dashes(&[[0.0, 5.5], [20.0, 5.5], [20.0, 5.5], [f32::INFINITY, 0.0]], 4.0, 1.0, BLACK, 1.0, ALL);
         let color = colors(canvas);
         assert_eq!(color(2, 5), BLACK);
         assert_eq!(color(6, 5), WHITE);

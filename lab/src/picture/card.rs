@@ -24,13 +24,7 @@ const SHADOW: Srgb = [70, 80, 98];
 const SHADOW_DEPTH: f32 = 0.34;
 
 /// Draws a panel's box, its text and the wall behind its cloth.
-pub fn draw_card(
-    canvas: &mut Canvas,
-    layout: &Layout,
-    index: usize,
-    panel: &Panel,
-    content: &Content,
-) {
+pub fn draw_card(canvas: &mut Canvas, layout: &Layout, index: usize, panel: &Panel, content: &Content) {
     let card = layout.card(index);
     canvas.fill(card, CARD);
     let window = layout.window(index);
@@ -40,45 +34,17 @@ pub fn draw_card(
             let (a, b) = (f32::from(WALL_TOP[i]), f32::from(WALL_BOTTOM[i]));
             (a + (b - a) * t + 0.5) as u8
         });
-        canvas.fill(
-            Area {
-                y: window.y + row,
-                height: 1,
-                ..window
-            },
-            color,
-        );
+        canvas.fill(Area { y: window.y + row, height: 1, ..window }, color);
     }
     canvas.border(card, RULE);
     let (x, width) = (card.x + PADDING, card.width - 2 * PADDING);
     let mut y = card.y + PADDING - 2;
-    let color = if matches!(content, Content::Cloth) {
-        INK
-    } else {
-        ALARM
-    };
-    let area = Area {
-        x,
-        y,
-        width,
-        height: Face::Heading.height(),
-    };
-    write(
-        canvas,
-        area,
-        &panel.heading,
-        Face::Heading,
-        Align::Left,
-        color,
-    );
+    let color = if matches!(content, Content::Cloth) { INK } else { ALARM };
+    let area = Area { x, y, width, height: Face::Heading.height() };
+    write(canvas, area, &panel.heading, Face::Heading, Align::Left, color);
     y += Face::Heading.height() + 3;
     for line in panel.lines.iter().take(MAX_LINES) {
-        let area = Area {
-            x,
-            y,
-            width,
-            height: Face::Body.height(),
-        };
+        let area = Area { x, y, width, height: Face::Body.height() };
         write(canvas, area, line, Face::Body, Align::Left, SOFT_INK);
         y += Face::Body.height() + 3;
     }
@@ -90,12 +56,7 @@ pub fn lay_cloth(canvas: &mut Canvas, window: Area, raster: &Raster) {
     for y in 0..raster.height() {
         for x in 0..raster.width() {
             let (left, top) = (window.x + x as i32, window.y + y as i32);
-            canvas.blend(
-                left,
-                top,
-                SHADOW,
-                SHADOW_DEPTH * shade[y * raster.width() + x],
-            );
+            canvas.blend(left, top, SHADOW, SHADOW_DEPTH * shade[y * raster.width() + x]);
             let (color, coverage) = raster.pixel(x, y);
             if coverage > 0.0 {
                 canvas.blend(left, top, to_srgb(color), coverage);
@@ -106,20 +67,13 @@ pub fn lay_cloth(canvas: &mut Canvas, window: Area, raster: &Raster) {
 
 /// Points of a window as points of the canvas.
 fn shifted(points: &[[f32; 2]], window: Area) -> Vec<[f32; 2]> {
-    points
-        .iter()
-        .map(|[x, y]| [window.x as f32 + x, window.y as f32 + y])
-        .collect()
+    points.iter().map(|[x, y]| [window.x as f32 + x, window.y as f32 + y]).collect()
 }
 
 /// Pins lie on top of everything: which particles are held must be seen even where cloth hangs over them.
 pub fn draw_pins(canvas: &mut Canvas, window: Area, camera: &Camera, grid: &Grid) {
     let spacing = grid.rest_m()[0].min(grid.rest_m()[1]) * camera.pixels_per_metre();
-    let radius = if grid.pins().len() > 4 {
-        (0.25 * spacing).clamp(1.2, 4.0)
-    } else {
-        4.0
-    };
+    let radius = if grid.pins().len() > 4 { (0.25 * spacing).clamp(1.2, 4.0) } else { 4.0 };
     let points: Vec<[f32; 2]> = grid
         .pins()
         .iter()
@@ -136,29 +90,10 @@ pub fn draw_pins(canvas: &mut Canvas, window: Area, camera: &Camera, grid: &Grid
 /// Says in a window why there is no cloth.
 pub fn draw_alarm(canvas: &mut Canvas, window: Area, headline: &str, reason: &str) {
     let y = window.y + window.height / 2 - Face::Heading.height();
-    let line = |y, height| Area {
-        x: window.x,
-        y,
-        width: window.width,
-        height,
-    };
-    write(
-        canvas,
-        line(y, Face::Heading.height()),
-        headline,
-        Face::Heading,
-        Align::Center,
-        ALARM,
-    );
+    let line = |y, height| Area { x: window.x, y, width: window.width, height };
+    write(canvas, line(y, Face::Heading.height()), headline, Face::Heading, Align::Center, ALARM);
     let y = y + Face::Heading.height() + 4;
-    write(
-        canvas,
-        line(y, Face::Small.height()),
-        reason,
-        Face::Small,
-        Align::Center,
-        SOFT_INK,
-    );
+    write(canvas, line(y, Face::Small.height()), reason, Face::Small, Align::Center, SOFT_INK);
 }
 
 /// Dashes the outlines of the reference panel into a window.

@@ -17,18 +17,13 @@ pub struct Style {
 
 impl Default for Style {
     fn default() -> Self {
-        Self {
-            fabric: [84, 112, 160],
-            ramp: Ramp::Heat,
-        }
+        Self { fabric: [84, 112, 160], ramp: Ramp::Heat }
     }
 }
 
 /// Directions to the lamps in the picture's frame (right, up, toward the viewer), their colour and strength.
-const LAMPS: [(Vec3, Linear); 2] = [
-    ([-0.78, 0.42, 0.46], [1.25, 1.20, 1.12]),
-    ([0.80, 0.10, 0.60], [0.22, 0.26, 0.34]),
-];
+const LAMPS: [(Vec3, Linear); 2] =
+    [([-0.78, 0.42, 0.46], [1.25, 1.20, 1.12]), ([0.80, 0.10, 0.60], [0.22, 0.26, 0.34])];
 /// Light from above and from below, mixed by the normal's height.
 const SKY: Linear = [0.30, 0.33, 0.38];
 const GROUND: Linear = [0.14, 0.13, 0.12];
@@ -66,29 +61,17 @@ pub fn draw(raster: &mut Raster, camera: &Camera, grid: &Grid, style: &Style) {
                 let particle = (row + dr) * grid.columns() + column + dc;
                 let ([x, y, z], [u, v]) = (normals[particle], strains[particle]);
                 let screen = camera.project(grid.positions()[particle]);
-                Vertex {
-                    screen,
-                    values: [x, y, z, dc as f32, dr as f32, u, v],
-                }
+                Vertex { screen, values: [x, y, z, dc as f32, dr as f32, u, v] }
             });
             let middle = Vertex {
                 screen: camera.project(grid.cell_center(row, column)),
-                values: std::array::from_fn(|i| {
-                    corners.iter().map(|corner| corner.values[i]).sum::<f32>() * 0.25
-                }),
+                values: std::array::from_fn(|i| corners.iter().map(|corner| corner.values[i]).sum::<f32>() * 0.25),
             };
             for i in 0..4 {
-                raster.triangle(
-                    [&corners[i], &corners[(i + 1) % 4], &middle],
-                    |&[x, y, z, s, t, u, v]| {
-                        let at = Spot {
-                            s: s.clamp(0.0, 1.0),
-                            t: t.clamp(0.0, 1.0),
-                            strain: u.max(v),
-                        };
-                        weave.shade(&cell, &at, fabric, lights.at([x, y, z]))
-                    },
-                );
+                raster.triangle([&corners[i], &corners[(i + 1) % 4], &middle], |&[x, y, z, s, t, u, v]| {
+                    let at = Spot { s: s.clamp(0.0, 1.0), t: t.clamp(0.0, 1.0), strain: u.max(v) };
+                    weave.shade(&cell, &at, fabric, lights.at([x, y, z]))
+                });
             }
         }
     }
@@ -110,28 +93,16 @@ struct Lights {
 
 impl Lights {
     fn new(camera: &Camera) -> Self {
-        let lamps = LAMPS.map(|(local, color)| {
-            (
-                normalized(camera.direction(local)).unwrap_or(camera.view().toward),
-                color,
-            )
-        });
-        Self {
-            toward: camera.view().toward,
-            up: camera.view().up,
-            lamps,
-        }
+        let lamps =
+            LAMPS.map(|(local, color)| (normalized(camera.direction(local)).unwrap_or(camera.view().toward), color));
+        Self { toward: camera.view().toward, up: camera.view().up, lamps }
     }
 
     /// Light that reaches the viewer from a white surface with this normal (need not be of unit length).
     fn at(&self, normal: Vec3) -> Linear {
         let normal = normalized(normal).unwrap_or(self.toward);
         let facing = dot(normal, self.toward);
-        let normal = if facing < 0.0 {
-            scale(normal, -1.0)
-        } else {
-            normal
-        };
+        let normal = if facing < 0.0 { scale(normal, -1.0) } else { normal };
         let height = 0.5 + 0.5 * dot(normal, self.up);
         let mut light = mix(GROUND, SKY, height);
         for (direction, color) in self.lamps {
@@ -142,11 +113,7 @@ impl Lights {
         // Fibres that stand off catch light where the surface turns away.
         let rim = 1.0 - facing.abs().min(1.0);
         light = light.map(|v| v + 0.12 * rim * rim * rim);
-        if facing < 0.0 {
-            scale(light, BACK)
-        } else {
-            light
-        }
+        if facing < 0.0 { scale(light, BACK) } else { light }
     }
 }
 
@@ -195,39 +162,26 @@ struct Weave {
 
 impl Weave {
     fn new(grid: &Grid, pixels_per_metre: f32, ramp: Ramp) -> Self {
-        let cell = grid
-            .rest_m()
-            .map(|rest| (rest * pixels_per_metre).max(1e-3));
-        let half =
-            |pixels: f32, most: f32| [(pixels / cell[1]).min(most), (pixels / cell[0]).min(most)];
+        let cell = grid.rest_m().map(|rest| (rest * pixels_per_metre).max(1e-3));
+        let half = |pixels: f32, most: f32| [(pixels / cell[1]).min(most), (pixels / cell[0]).min(most)];
         Self {
             thread: half(THREAD_HALF_PX, 0.5),
             edge: half(EDGE_HALF_PX, 0.26),
-            colors: (0..TABLE)
-                .map(|i| to_linear(ramp.color(i as f32 * TABLE_STEP)))
-                .collect(),
+            colors: (0..TABLE).map(|i| to_linear(ramp.color(i as f32 * TABLE_STEP))).collect(),
             every: cell.map(|pixels| (THREAD_SPACING_PX / pixels).ceil().max(1.0) as usize),
         }
     }
 
     /// Colour at (s, t) of a cell: fabric and threads, tinted by the strain there, over-stretched edges on top.
     fn shade(&self, cell: &Cell, at: &Spot, fabric: Linear, light: Linear) -> Linear {
-        let &Spot {
-            s,
-            t,
-            strain: between,
-        } = at;
+        let &Spot { s, t, strain: between } = at;
         let threads = [
             t < self.thread[0] && cell.row.is_multiple_of(self.every[1]),
             1.0 - t < self.thread[0] && (cell.row + 1).is_multiple_of(self.every[1]),
             s < self.thread[1] && cell.column.is_multiple_of(self.every[0]),
             1.0 - s < self.thread[1] && (cell.column + 1).is_multiple_of(self.every[0]),
         ];
-        let cloth = if threads.contains(&true) {
-            scale(fabric, THREAD_SHADE)
-        } else {
-            fabric
-        };
+        let cloth = if threads.contains(&true) { scale(fabric, THREAD_SHADE) } else { fabric };
         let edges = [
             (t < self.edge[0], cell.top),
             (1.0 - t < self.edge[0], cell.bottom),
@@ -235,11 +189,7 @@ impl Weave {
             (1.0 - s < self.edge[1], cell.right),
         ];
         // The more stretched of the edges that meet here lies on top.
-        let edge = edges
-            .iter()
-            .filter(|edge| edge.0)
-            .map(|edge| edge.1)
-            .fold(0.0, f32::max);
+        let edge = edges.iter().filter(|edge| edge.0).map(|edge| edge.1).fold(0.0, f32::max);
         let (strain, weight) = if edge > EDGE_SHOWS * between {
             (edge, Ramp::weight(edge))
         } else {
@@ -250,11 +200,7 @@ impl Weave {
             return lit;
         }
         let brightness = GLOW + (1.0 - GLOW) * ((light[0] + light[1] + light[2]) / 3.0).min(1.0);
-        mix(
-            lit,
-            scale(self.colors[table_index(strain)], brightness),
-            weight,
-        )
+        mix(lit, scale(self.colors[table_index(strain)], brightness), weight)
     }
 }
 
@@ -266,21 +212,11 @@ mod tests {
 
     /// A flat 9 x 9 sheet, stretched along u, drawn from the front; colour of the pixel in the middle of the view.
     fn middle(strain: f32, style: &Style) -> Srgb {
-        let positions: Vec<Vec3> = (0..81)
-            .map(|i| {
-                [
-                    ((i % 9) as f32 / 8.0 - 0.5) * (1.0 + strain),
-                    0.5 - (i / 9) as f32 / 8.0,
-                    0.0,
-                ]
-            })
-            .collect();
+        let positions: Vec<Vec3> =
+            (0..81).map(|i| [((i % 9) as f32 / 8.0 - 0.5) * (1.0 + strain), 0.5 - (i / 9) as f32 / 8.0, 0.0]).collect();
         let grid = Grid::new(&positions, 9, 9, 1.0, 1.0).expect("a grid");
         let view = View::new(0.0, 0.0);
-        let frame = Frame {
-            min: [-0.5, -0.5],
-            max: [0.5, 0.5],
-        };
+        let frame = Frame { min: [-0.5, -0.5], max: [0.5, 0.5] };
         let camera = Camera::fit(view, &frame, 160, 160, 0);
         let mut raster = Raster::new(160, 160);
         draw(&mut raster, &camera, &grid, style);
@@ -291,30 +227,18 @@ mod tests {
     }
 
     fn close(a: Srgb, b: Srgb, within: i32) -> bool {
-        a.iter()
-            .zip(b)
-            .all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= within)
+        a.iter().zip(b).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= within)
     }
 
     #[test]
     fn stretched_edges_have_the_ramp_colour_of_their_strain() {
         for ramp in [Ramp::Heat, Ramp::ColorBlindSafe] {
-            let style = Style {
-                ramp,
-                ..Style::default()
-            };
+            let style = Style { ramp, ..Style::default() };
             let unstretched = middle(0.0, &style);
-            assert_eq!(
-                middle(0.019, &style),
-                unstretched,
-                "below 2 % the fabric keeps its colour"
-            );
+            assert_eq!(middle(0.019, &style), unstretched, "below 2 % the fabric keeps its colour");
             for strain in [0.04, 0.07, 0.13, 0.20, 0.50] {
                 let (seen, meant) = (middle(strain, &style), ramp.color(strain));
-                assert!(
-                    close(seen, meant, 12),
-                    "{ramp:?} {strain}: {seen:?} for {meant:?}"
-                );
+                assert!(close(seen, meant, 12), "{ramp:?} {strain}: {seen:?} for {meant:?}");
             }
         }
     }
@@ -330,14 +254,10 @@ mod tests {
     fn both_sides_are_drawn_and_the_far_side_is_darker() {
         let style = Style::default();
         let sheet = |flip: f32| {
-            let positions: Vec<Vec3> = [[-0.5, 0.5], [0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]]
-                .map(|[x, y]| [x * flip, y, 0.0])
-                .to_vec();
+            let positions: Vec<Vec3> =
+                [[-0.5, 0.5], [0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]].map(|[x, y]| [x * flip, y, 0.0]).to_vec();
             let grid = Grid::new(&positions, 2, 2, 1.0, 1.0).expect("a grid");
-            let frame = Frame {
-                min: [-0.5, -0.5],
-                max: [0.5, 0.5],
-            };
+            let frame = Frame { min: [-0.5, -0.5], max: [0.5, 0.5] };
             let camera = Camera::fit(View::new(0.0, 0.0), &frame, 60, 60, 0);
             let mut raster = Raster::new(60, 60);
             draw(&mut raster, &camera, &grid, &style);

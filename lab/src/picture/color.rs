@@ -10,11 +10,7 @@ pub type Linear = [f32; 3];
 pub fn to_linear(color: Srgb) -> Linear {
     color.map(|byte| {
         let v = f32::from(byte) / 255.0;
-        if v <= 0.040_45 {
-            v / 12.92
-        } else {
-            ((v + 0.055) / 1.055).powf(2.4)
-        }
+        if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
     })
 }
 
@@ -22,11 +18,7 @@ pub fn to_linear(color: Srgb) -> Linear {
 pub fn to_srgb(color: Linear) -> Srgb {
     color.map(|v| {
         let v = v.clamp(0.0, 1.0);
-        let v = if v <= 0.003_130_8 {
-            v * 12.92
-        } else {
-            1.055 * v.powf(1.0 / 2.4) - 0.055
-        };
+        let v = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
         (v * 255.0 + 0.5) as u8
     })
 }
@@ -58,19 +50,11 @@ pub enum Ramp {
 /// Stops of a ramp: strain and colour, strains ascending.
 type Stops = [(f32, Srgb); 4];
 
-const HEAT: Stops = [
-    (STRAIN_FLOOR, [255, 221, 51]),
-    (0.07, [255, 138, 24]),
-    (0.13, [226, 28, 36]),
-    (STRAIN_CEILING, [226, 10, 190]),
-];
+const HEAT: Stops =
+    [(STRAIN_FLOOR, [255, 221, 51]), (0.07, [255, 138, 24]), (0.13, [226, 28, 36]), (STRAIN_CEILING, [226, 10, 190])];
 
-const SAFE: Stops = [
-    (STRAIN_FLOOR, [252, 243, 160]),
-    (0.07, [249, 165, 40]),
-    (0.13, [176, 56, 80]),
-    (STRAIN_CEILING, [38, 10, 60]),
-];
+const SAFE: Stops =
+    [(STRAIN_FLOOR, [252, 243, 160]), (0.07, [249, 165, 40]), (0.13, [176, 56, 80]), (STRAIN_CEILING, [38, 10, 60])];
 
 impl Ramp {
     /// The pure colour of a strain, clipped to the ramp's ends.
@@ -83,11 +67,7 @@ impl Ramp {
         for stop in stops {
             if strain <= stop.0 {
                 let span = stop.0 - previous.0;
-                let t = if span > 0.0 {
-                    ((strain - previous.0) / span).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
+                let t = if span > 0.0 { ((strain - previous.0) / span).clamp(0.0, 1.0) } else { 0.0 };
                 return std::array::from_fn(|i| {
                     let (a, b) = (f32::from(previous.1[i]), f32::from(stop.1[i]));
                     (a + (b - a) * t + 0.5) as u8

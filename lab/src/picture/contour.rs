@@ -15,15 +15,9 @@ const STEPS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 /// Closed lines (first point = last point) in pixels around the covered parts of a view and round its holes.
 pub fn outlines(raster: &Raster) -> Vec<Vec<[f32; 2]>> {
     let (width, height) = (raster.width(), raster.height());
-    let mask: Vec<bool> = (0..width * height)
-        .map(|i| raster.pixel(i % width, i / width).1 >= 0.5)
-        .collect();
+    let mask: Vec<bool> = (0..width * height).map(|i| raster.pixel(i % width, i / width).1 >= 0.5).collect();
     let covered = |x: isize, y: isize| {
-        x >= 0
-            && y >= 0
-            && x < width as isize
-            && y < height as isize
-            && mask[y as usize * width + x as usize]
+        x >= 0 && y >= 0 && x < width as isize && y < height as isize && mask[y as usize * width + x as usize]
     };
     // At every pixel corner, one bit for each border edge that leaves it with the covered pixel on its right.
     let stride = width + 1;
@@ -62,10 +56,7 @@ fn follow(leaving: &mut [u8], stride: usize, start: usize) -> Vec<[f32; 2]> {
     loop {
         points.push([(at % stride) as f32, (at / stride) as f32]);
         // Right first: where two covered pixels touch by a corner only, the loop stays with its own.
-        let Some(turn) = [1, 0, 3]
-            .into_iter()
-            .find(|turn| leaving[at] & (1 << ((heading + turn) % 4)) != 0)
-        else {
+        let Some(turn) = [1, 0, 3].into_iter().find(|turn| leaving[at] & (1 << ((heading + turn) % 4)) != 0) else {
             break;
         };
         heading = (heading + turn) % 4;
@@ -83,14 +74,8 @@ fn smoothed(mut line: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     for _ in 0..PASSES {
         line = (0..count)
             .map(|i| {
-                let (before, here, after) = (
-                    line[(i + count - 1) % count],
-                    line[i],
-                    line[(i + 1) % count],
-                );
-                std::array::from_fn(|axis| {
-                    0.25 * before[axis] + 0.5 * here[axis] + 0.25 * after[axis]
-                })
+                let (before, here, after) = (line[(i + count - 1) % count], line[i], line[(i + 1) % count]);
+                std::array::from_fn(|axis| 0.25 * before[axis] + 0.5 * here[axis] + 0.25 * after[axis])
             })
             .collect();
     }
@@ -106,16 +91,8 @@ mod tests {
     use super::*;
 
     fn square(raster: &mut Raster, low: f32, high: f32) {
-        let corner = |x, y| Vertex {
-            screen: [x, y, 0.0],
-            values: [],
-        };
-        let (a, b, c, d) = (
-            corner(low, low),
-            corner(high, low),
-            corner(high, high),
-            corner(low, high),
-        );
+        let corner = |x, y| Vertex { screen: [x, y, 0.0], values: [] };
+        let (a, b, c, d) = (corner(low, low), corner(high, low), corner(high, high), corner(low, high));
         raster.triangle([&a, &b, &c], |_| [1.0; 3]);
         raster.triangle([&a, &c, &d], |_| [1.0; 3]);
     }
@@ -127,18 +104,12 @@ mod tests {
         square(&mut raster, 25.0, 45.0);
         square(&mut raster, 50.0, 52.0);
         let lines = outlines(&raster);
-        assert_eq!(
-            lines.len(),
-            2,
-            "they touch at a corner; the speck is left out"
-        );
+        assert_eq!(lines.len(), 2, "they touch at a corner; the speck is left out");
         for (line, low) in lines.iter().zip([5.0, 25.0]) {
             assert_eq!(line.first(), line.last());
             assert_eq!(line.len(), 80 / STRIDE + 1);
             for &[x, y] in line {
-                let edge = [x, y, low + 20.0 - x + low, low + 20.0 - y + low]
-                    .into_iter()
-                    .fold(f32::MAX, f32::min);
+                let edge = [x, y, low + 20.0 - x + low, low + 20.0 - y + low].into_iter().fold(f32::MAX, f32::min);
                 assert!((edge - low).abs() < 2.0, "{x} {y}");
             }
         }

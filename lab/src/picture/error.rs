@@ -63,34 +63,16 @@ impl fmt::Display for PictureError {
         match self {
             Self::Empty => write!(f, "nothing to draw: the picture has no panel or series"),
             Self::TooManyPanels { panels } => {
-                write!(
-                    f,
-                    "a sheet holds at most {} panels, not {panels}",
-                    super::MAX_PANELS
-                )
+                write!(f, "a sheet holds at most {} panels, not {panels}", super::MAX_PANELS)
             }
             Self::Grid { rows, columns } => {
-                write!(
-                    f,
-                    "a grid to draw has 2 to 4096 rows and columns, not {rows} x {columns}"
-                )
+                write!(f, "a grid to draw has 2 to 4096 rows and columns, not {rows} x {columns}")
             }
-            Self::Positions {
-                rows,
-                columns,
-                given,
-            } => {
-                write!(
-                    f,
-                    "a {rows} x {columns} grid has {} positions, not {given}",
-                    rows * columns
-                )
+            Self::Positions { rows, columns, given } => {
+                write!(f, "a {rows} x {columns} grid has {} positions, not {given}", rows * columns)
             }
             Self::RestSize { width_m, height_m } => {
-                write!(
-                    f,
-                    "the rest size must be positive, not {width_m} m x {height_m} m"
-                )
+                write!(f, "the rest size must be positive, not {width_m} m x {height_m} m")
             }
             Self::Pin { pin, particles } => {
                 write!(f, "pin {pin} is outside the grid of {particles} particles")

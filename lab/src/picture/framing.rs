@@ -21,12 +21,7 @@ fn smallest_frame(panels: &[Panel], view: &View) -> Option<(Frame, f32)> {
     panels
         .iter()
         .filter(|panel| panel.grid.is_finite())
-        .filter_map(|panel| {
-            Some((
-                Frame::around(view, panel.grid.positions())?,
-                panel.grid.diagonal_m(),
-            ))
-        })
+        .filter_map(|panel| Some((Frame::around(view, panel.grid.positions())?, panel.grid.diagonal_m())))
         // Finite positions may lie so far out that their projections are not.
         .filter(|(frame, _)| frame.size().iter().all(|side| side.is_finite()))
         .min_by(|(a, _), (b, _)| {
@@ -44,29 +39,20 @@ pub fn contents(panels: &[Panel], view: &View) -> Vec<Content> {
             if !panel.grid.is_finite() {
                 return Content::NotFinite;
             }
-            let near = smallest
-                .zip(Frame::around(view, panel.grid.positions()))
-                .is_some_and(|((base, _), frame)| {
-                    let limit = base.grown(OFF_SCALE * panel.grid.diagonal_m());
-                    base.size()[0].max(base.size()[1]) <= OFF_SCALE * panel.grid.diagonal_m()
-                        && frame.size().iter().all(|side| side.is_finite())
-                        && frame.clamped(&limit) == frame
-                });
-            if near {
-                Content::Cloth
-            } else {
-                Content::OffScale
-            }
+            let near = smallest.zip(Frame::around(view, panel.grid.positions())).is_some_and(|((base, _), frame)| {
+                let limit = base.grown(OFF_SCALE * panel.grid.diagonal_m());
+                base.size()[0].max(base.size()[1]) <= OFF_SCALE * panel.grid.diagonal_m()
+                    && frame.size().iter().all(|side| side.is_finite())
+                    && frame.clamped(&limit) == frame
+            });
+            if near { Content::Cloth } else { Content::OffScale }
         })
         .collect()
 }
 
 /// The frame that all panels share; a unit square when no panel can be drawn.
 pub fn shared_frame(panels: &[Panel], contents: &[Content], view: &View) -> Frame {
-    let unit = Frame {
-        min: [0.0; 2],
-        max: [1.0; 2],
-    };
+    let unit = Frame { min: [0.0; 2], max: [1.0; 2] };
     let Some((base, diagonal)) = smallest_frame(panels, view) else {
         return unit;
     };

@@ -36,26 +36,12 @@ impl Grid {
             return Err(PictureError::Grid { rows, columns });
         }
         if positions.len() != rows * columns {
-            return Err(PictureError::Positions {
-                rows,
-                columns,
-                given: positions.len(),
-            });
+            return Err(PictureError::Positions { rows, columns, given: positions.len() });
         }
-        if ![width_m, height_m]
-            .iter()
-            .all(|side| side.is_finite() && *side > 0.0)
-        {
+        if ![width_m, height_m].iter().all(|side| side.is_finite() && *side > 0.0) {
             return Err(PictureError::RestSize { width_m, height_m });
         }
-        Ok(Self {
-            positions: positions.to_vec(),
-            rows,
-            columns,
-            width_m,
-            height_m,
-            pins: Vec::new(),
-        })
+        Ok(Self { positions: positions.to_vec(), rows, columns, width_m, height_m, pins: Vec::new() })
     }
 
     /// The same grid with these particles marked as pinned.
@@ -98,10 +84,7 @@ impl Grid {
 
     /// Rest length of the edges along a row and along a column, metres.
     pub fn rest_m(&self) -> [f32; 2] {
-        [
-            self.width_m / (self.columns - 1) as f32,
-            self.height_m / (self.rows - 1) as f32,
-        ]
+        [self.width_m / (self.columns - 1) as f32, self.height_m / (self.rows - 1) as f32]
     }
 
     /// Diagonal of the rest shape, metres.
@@ -177,9 +160,7 @@ mod tests {
     use super::*;
 
     fn flat(stretch: f32) -> Vec<Vec3> {
-        (0..12)
-            .map(|i| [(i % 4) as f32 * 0.1 * stretch, (i / 4) as f32 * -0.2, 0.0])
-            .collect()
+        (0..12).map(|i| [(i % 4) as f32 * 0.1 * stretch, (i / 4) as f32 * -0.2, 0.0]).collect()
     }
 
     #[test]
@@ -187,11 +168,7 @@ mod tests {
         let grid = Grid::new(&flat(1.1), 3, 4, 0.3, 0.4).expect("a grid");
         assert!((grid.strain_u(2, 2) - 0.1).abs() < 1e-5);
         assert!(grid.strain_v(1, 3).abs() < 1e-5);
-        assert!(
-            grid.particle_strains()
-                .iter()
-                .all(|[u, v]| (u - 0.1).abs() < 1e-5 && v.abs() < 1e-5)
-        );
+        assert!(grid.particle_strains().iter().all(|[u, v]| (u - 0.1).abs() < 1e-5 && v.abs() < 1e-5));
         assert!(grid.normals().iter().all(|n| (n[2] - 1.0).abs() < 1e-6));
     }
 

@@ -65,22 +65,11 @@ impl Layout {
         let size = frame.size();
         let aspect = (size[1] / size[0].max(1e-6)).clamp(WINDOW_ASPECT.0, WINDOW_ASPECT.1);
         let window_height = ((card_width - 2) as f32 * aspect) as i32;
-        let most_lines = sheet
-            .panels
-            .iter()
-            .map(|panel| panel.lines.len().min(MAX_LINES))
-            .max()
-            .unwrap_or(0) as i32;
-        let card_text =
-            PADDING + Face::Heading.height() + most_lines * (Face::Body.height() + 3) + PADDING - 4;
+        let most_lines = sheet.panels.iter().map(|panel| panel.lines.len().min(MAX_LINES)).max().unwrap_or(0) as i32;
+        let card_text = PADDING + Face::Heading.height() + most_lines * (Face::Body.height() + 3) + PADDING - 4;
         let card = (card_width, card_text + window_height + 1);
         let width = 2 * MARGIN + columns as i32 * card.0 + (columns as i32 - 1) * GAP;
-        let header = Face::Title.height()
-            + if sheet.subtitle.is_some() {
-                4 + Face::Body.height()
-            } else {
-                0
-            };
+        let header = Face::Title.height() + if sheet.subtitle.is_some() { 4 + Face::Body.height() } else { 0 };
         let cards_top = MARGIN + header + 20;
         let mut bottom = cards_top + rows as i32 * card.1 + (rows as i32 - 1) * GAP;
 
@@ -91,37 +80,22 @@ impl Layout {
             let x = MARGIN + (columns - hole) as i32 * (card.0 + GAP);
             let height = keys.height(hole_width - 2 * PADDING);
             let y = bottom - card.1 + PADDING;
-            Area {
-                x: x + PADDING,
-                y,
-                width: hole_width - 2 * PADDING,
-                height,
-            }
+            Area { x: x + PADDING, y, width: hole_width - 2 * PADDING, height }
         } else {
             let legend_width = width - 2 * MARGIN;
             let height = keys.height(legend_width);
             let y = bottom + 22;
             bottom = y + height;
-            Area {
-                x: MARGIN,
-                y,
-                width: legend_width,
-                height,
-            }
+            Area { x: MARGIN, y, width: legend_width, height }
         };
         let footer_lines = match &sheet.footer {
-            Some(footer) => wrapped(footer, Face::Small, width - 2 * MARGIN)
-                .into_iter()
-                .take(MAX_FOOTER_LINES)
-                .collect(),
+            Some(footer) => {
+                wrapped(footer, Face::Small, width - 2 * MARGIN).into_iter().take(MAX_FOOTER_LINES).collect()
+            }
             None => Vec::new(),
         };
         let footer_top = bottom + 20;
-        let footer = if footer_lines.is_empty() {
-            0
-        } else {
-            20 + footer_lines.len() as i32 * FOOTER_LINE
-        };
+        let footer = if footer_lines.is_empty() { 0 } else { 20 + footer_lines.len() as i32 * FOOTER_LINE };
         Self {
             width,
             height: bottom + footer + MARGIN,
@@ -163,11 +137,7 @@ fn wrapped(text: &str, face: Face, width: i32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
-            Some(line)
-                if {
-                    face.width(line).saturating_add(face.width(word)) <= width - face.advance()
-                } =>
-            {
+            Some(line) if { face.width(line).saturating_add(face.width(word)) <= width - face.advance() } => {
                 line.push(' ');
                 line.push_str(word);
             }

@@ -19,14 +19,7 @@ pub const PIN_RING: Srgb = [255, 255, 255];
 /// Strain at the right end of the bar; beyond 20 % it is the last colour.
 const BAR_END: f32 = 0.24;
 /// Labelled strains.
-const TICKS: [(f32, &str); 6] = [
-    (0.0, "0"),
-    (0.02, "2"),
-    (0.05, "5"),
-    (0.10, "10"),
-    (0.15, "15"),
-    (0.20, "20 %"),
-];
+const TICKS: [(f32, &str); 6] = [(0.0, "0"), (0.02, "2"), (0.05, "5"), (0.10, "10"), (0.15, "15"), (0.20, "20 %")];
 
 const BAR_HEIGHT: i32 = 20;
 const CAPTION_GAP: i32 = 28;
@@ -50,36 +43,22 @@ pub struct Keys {
 
 impl Keys {
     fn count(&self) -> i32 {
-        i32::from(self.outline_of.is_some())
-            + i32::from(self.pins)
-            + i32::from(self.pixels_per_metre.is_some())
+        i32::from(self.outline_of.is_some()) + i32::from(self.pins) + i32::from(self.pixels_per_metre.is_some())
     }
 
     /// Height that the legend needs at a width, pixels.
     pub fn height(&self, width: i32) -> i32 {
         let keys = self.count() * KEY_HEIGHT;
-        if width >= SIDE_BY_SIDE {
-            SCALE_HEIGHT.max(keys)
-        } else {
-            SCALE_HEIGHT + 10 + keys
-        }
+        if width >= SIDE_BY_SIDE { SCALE_HEIGHT.max(keys) } else { SCALE_HEIGHT + 10 + keys }
     }
 }
 
 /// Draws the legend into the top of `area`.
 pub fn draw(canvas: &mut Canvas, area: Area, style: &Style, keys: &Keys) {
-    let bar = Area {
-        width: BAR_WIDTH.min(area.width),
-        height: SCALE_HEIGHT,
-        ..area
-    };
+    let bar = Area { width: BAR_WIDTH.min(area.width), height: SCALE_HEIGHT, ..area };
     draw_bar(canvas, bar, style);
     let beside = area.width >= SIDE_BY_SIDE;
-    let (x, mut y) = if beside {
-        (area.x + bar.width + 60, area.y)
-    } else {
-        (area.x, area.y + SCALE_HEIGHT + 10)
-    };
+    let (x, mut y) = if beside { (area.x + bar.width + 60, area.y) } else { (area.x, area.y + SCALE_HEIGHT + 10) };
     let sample = 46;
     let mut line = |canvas: &mut Canvas, text: &str, symbol: &dyn Fn(&mut Canvas, i32)| {
         symbol(canvas, y + KEY_HEIGHT / 2);
@@ -93,19 +72,13 @@ pub fn draw(canvas: &mut Canvas, area: Area, style: &Style, keys: &Keys) {
         y += KEY_HEIGHT;
     };
     if keys.pins {
-        line(canvas, "pinned particle", &|canvas, y| {
-            pin(canvas, [(x + sample / 2) as f32, y as f32], 4.0, area)
-        });
+        line(canvas, "pinned particle", &|canvas, y| pin(canvas, [(x + sample / 2) as f32, y as f32], 4.0, area));
     }
     if let Some(heading) = &keys.outline_of {
-        line(
-            canvas,
-            &format!("outline of \"{heading}\""),
-            &|canvas, y| {
-                let y = y as f32;
-                outline(canvas, &[[x as f32, y], [(x + sample) as f32, y]], area);
-            },
-        );
+        line(canvas, &format!("outline of \"{heading}\""), &|canvas, y| {
+            let y = y as f32;
+            outline(canvas, &[[x as f32, y], [(x + sample) as f32, y]], area);
+        });
     }
     if let Some(pixels_per_metre) = keys.pixels_per_metre {
         let (metres, label) = scale_length(pixels_per_metre, sample as f32);
@@ -136,52 +109,19 @@ pub fn outline(canvas: &mut Canvas, points: &[[f32; 2]], clip: Area) {
 }
 
 fn draw_bar(canvas: &mut Canvas, area: Area, style: &Style) {
-    let caption = Area {
-        height: Face::Body.height(),
-        ..area
-    };
-    write(
-        canvas,
-        caption,
-        "stretch of an edge",
-        Face::Body,
-        Align::Left,
-        SOFT_INK,
-    );
-    let bar = Area {
-        y: area.y + CAPTION_GAP,
-        height: BAR_HEIGHT,
-        ..area
-    };
+    let caption = Area { height: Face::Body.height(), ..area };
+    write(canvas, caption, "stretch of an edge", Face::Body, Align::Left, SOFT_INK);
+    let bar = Area { y: area.y + CAPTION_GAP, height: BAR_HEIGHT, ..area };
     for x in 0..bar.width {
         let strain = (x as f32 + 0.5) / bar.width as f32 * BAR_END;
-        let color = mix(
-            to_linear(style.fabric),
-            to_linear(style.ramp.color(strain)),
-            Ramp::weight(strain),
-        );
-        canvas.fill(
-            Area {
-                x: bar.x + x,
-                width: 1,
-                ..bar
-            },
-            to_srgb(color),
-        );
+        let color = mix(to_linear(style.fabric), to_linear(style.ramp.color(strain)), Ramp::weight(strain));
+        canvas.fill(Area { x: bar.x + x, width: 1, ..bar }, to_srgb(color));
     }
     canvas.border(bar, SOFT_INK);
     let advance = Face::Small.advance();
     for (strain, label) in TICKS {
         let x = bar.x + ((bar.width - 1) as f32 * strain / BAR_END + 0.5) as i32;
-        canvas.fill(
-            Area {
-                x,
-                y: bar.y + bar.height,
-                width: 1,
-                height: 5,
-            },
-            SOFT_INK,
-        );
+        canvas.fill(Area { x, y: bar.y + bar.height, width: 1, height: 5 }, SOFT_INK);
         // Digits are centred on the tick; a unit after them hangs over to the right.
         let digits = label.chars().filter(char::is_ascii_digit).count() as i32;
         let text = Area {
@@ -198,11 +138,7 @@ fn draw_bar(canvas: &mut Canvas, area: Area, style: &Style) {
 fn scale_length(pixels_per_metre: f32, pixels: f32) -> (f32, String) {
     let most = f64::from(pixels / pixels_per_metre);
     let power = 10f64.powf(most.log10().floor());
-    let metres = [5.0, 2.0, 1.0]
-        .map(|step| step * power)
-        .into_iter()
-        .find(|&m| m <= most)
-        .unwrap_or(power);
+    let metres = [5.0, 2.0, 1.0].map(|step| step * power).into_iter().find(|&m| m <= most).unwrap_or(power);
     let label = if metres >= 1.0 {
         format!("{metres:.0} m")
     } else if metres >= 0.01 {

@@ -30,12 +30,7 @@ impl Raster {
     /// An empty view of `width` x `height` pixels.
     pub fn new(width: usize, height: usize) -> Self {
         let samples = width * height * SAMPLES * SAMPLES;
-        Self {
-            width,
-            height,
-            depth: vec![f32::NEG_INFINITY; samples],
-            color: vec![[0.0; 3]; samples],
-        }
+        Self { width, height, depth: vec![f32::NEG_INFINITY; samples], color: vec![[0.0; 3]; samples] }
     }
 
     /// Width in pixels.
@@ -52,11 +47,7 @@ impl Raster {
     ///
     /// Shared edges are covered by both triangles, so that a mesh has no cracks; of equal depths the first stays.
     /// A triangle with a coordinate that is not finite, or without area, draws nothing.
-    pub fn triangle<const N: usize>(
-        &mut self,
-        corners: [&Vertex<N>; 3],
-        mut shade: impl FnMut(&[f32; N]) -> Linear,
-    ) {
+    pub fn triangle<const N: usize>(&mut self, corners: [&Vertex<N>; 3], mut shade: impl FnMut(&[f32; N]) -> Linear) {
         let scale = SAMPLES as f32;
         let [a, b, c] = corners.map(|v| [v.screen[0] * scale, v.screen[1] * scale, v.screen[2]]);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -85,9 +76,7 @@ impl Raster {
                 if depth > self.depth[sample] {
                     self.depth[sample] = depth;
                     let values = std::array::from_fn(|i| {
-                        wa * corners[0].values[i]
-                            + wb * corners[1].values[i]
-                            + wc * corners[2].values[i]
+                        wa * corners[0].values[i] + wb * corners[1].values[i] + wc * corners[2].values[i]
                     });
                     self.color[sample] = shade(&values);
                 }
@@ -113,10 +102,7 @@ impl Raster {
         if covered == 0.0 {
             return ([0.0; 3], 0.0);
         }
-        (
-            sum.map(|total| total / covered),
-            covered / (SAMPLES * SAMPLES) as f32,
-        )
+        (sum.map(|total| total / covered), covered / (SAMPLES * SAMPLES) as f32)
     }
 }
 
@@ -132,26 +118,15 @@ mod tests {
     use super::*;
 
     fn corner(x: f32, y: f32, depth: f32) -> Vertex<1> {
-        Vertex {
-            screen: [x, y, depth],
-            values: [x],
-        }
+        Vertex { screen: [x, y, depth], values: [x] }
     }
 
     #[test]
     fn covers_what_it_should_and_the_nearer_wins() {
         let mut raster = Raster::new(8, 8);
-        let (a, b, c) = (
-            corner(0.0, 0.0, 1.0),
-            corner(8.0, 0.0, 1.0),
-            corner(0.0, 8.0, 1.0),
-        );
+        let (a, b, c) = (corner(0.0, 0.0, 1.0), corner(8.0, 0.0, 1.0), corner(0.0, 8.0, 1.0));
         raster.triangle([&a, &b, &c], |_| [1.0, 0.0, 0.0]);
-        let (d, e, f) = (
-            corner(0.0, 0.0, 0.0),
-            corner(8.0, 0.0, 0.0),
-            corner(8.0, 8.0, 0.0),
-        );
+        let (d, e, f) = (corner(0.0, 0.0, 0.0), corner(8.0, 0.0, 0.0), corner(8.0, 8.0, 0.0));
         raster.triangle([&d, &e, &f], |_| [0.0, 1.0, 0.0]);
         assert_eq!(raster.pixel(1, 1), ([1.0, 0.0, 0.0], 1.0));
         assert_eq!(raster.pixel(7, 4), ([0.0, 1.0, 0.0], 1.0));
@@ -163,11 +138,7 @@ mod tests {
     #[test]
     fn interpolates_linearly() {
         let mut raster = Raster::new(8, 8);
-        let (a, b, c) = (
-            corner(0.0, 0.0, 1.0),
-            corner(8.0, 0.0, 1.0),
-            corner(0.0, 8.0, 1.0),
-        );
+        let (a, b, c) = (corner(0.0, 0.0, 1.0), corner(8.0, 0.0, 1.0), corner(0.0, 8.0, 1.0));
         raster.triangle([&a, &b, &c], |values| [values[0] / 8.0; 3]);
         assert!((raster.pixel(2, 2).0[0] - 2.5 / 8.0).abs() < 1e-5);
     }
@@ -176,22 +147,10 @@ mod tests {
     fn degenerate_and_absurd_triangles_draw_nothing_or_stay_inside() {
         let mut raster = Raster::new(4, 4);
         let good = corner(0.0, 0.0, 0.0);
-        for bad in [
-            corner(f32::NAN, 0.0, 0.0),
-            corner(f32::INFINITY, 1.0, 0.0),
-            corner(3.0, 3.0, f32::NAN),
-            good,
-        ] {
+        for bad in [corner(f32::NAN, 0.0, 0.0), corner(f32::INFINITY, 1.0, 0.0), corner(3.0, 3.0, f32::NAN), good] {
             raster.triangle([&good, &bad, &corner(4.0, 0.0, 0.0)], |_| [1.0; 3]);
         }
-        raster.triangle(
-            [
-                &corner(-1e30, -1e30, 0.0),
-                &corner(1e30, 0.0, 0.0),
-                &corner(0.0, 1e30, 0.0),
-            ],
-            |_| [1.0; 3],
-        );
+        raster.triangle([&corner(-1e30, -1e30, 0.0), &corner(1e30, 0.0, 0.0), &corner(0.0, 1e30, 0.0)], |_| [1.0; 3]);
         assert_eq!(raster.pixel(2, 1).1, 0.0);
     }
 }

@@ -49,23 +49,12 @@ mod tests {
     #[test]
     fn the_shadow_is_shifted_soft_and_as_dark_as_the_cloth_is_wide() {
         let mut raster = Raster::new(80, 80);
-        let corner = |x: f32, y: f32| Vertex {
-            screen: [x, y, 0.0],
-            values: [],
-        };
-        let (a, b, c, d) = (
-            corner(0.0, 0.0),
-            corner(40.0, 0.0),
-            corner(40.0, 40.0),
-            corner(0.0, 40.0),
-        );
+        let corner = |x: f32, y: f32| Vertex { screen: [x, y, 0.0], values: [] };
+        let (a, b, c, d) = (corner(0.0, 0.0), corner(40.0, 0.0), corner(40.0, 40.0), corner(0.0, 40.0));
         raster.triangle([&a, &b, &c], |_| [1.0; 3]);
         raster.triangle([&a, &c, &d], |_| [1.0; 3]);
         let shade = cast(&raster);
-        assert!(
-            (shade[32 * 80 + 29] - 1.0).abs() < 1e-4,
-            "dark in the middle"
-        );
+        assert!((shade[32 * 80 + 29] - 1.0).abs() < 1e-4, "dark in the middle");
         assert_eq!(shade[79 * 80 + 79], 0.0);
         let edge = shade[32 * 80 + 49];
         assert!(edge > 0.3 && edge < 0.7, "soft at the edge: {edge}");

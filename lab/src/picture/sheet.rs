@@ -41,11 +41,7 @@ pub struct Panel {
 impl Panel {
     /// A panel with a heading such as `generated`; the grid may hold positions that are not finite.
     pub fn new(heading: impl Into<String>, grid: Grid) -> Self {
-        Self {
-            heading: heading.into(),
-            lines: Vec::new(),
-            grid,
-        }
+        Self { heading: heading.into(), lines: Vec::new(), grid }
     }
 
     /// Adds a line below the heading, such as `max 5.5 %  p99 1.2 %`; cut where the panel ends.
@@ -128,48 +124,25 @@ impl Sheet {
             return Err(PictureError::Empty);
         }
         if self.panels.len() > MAX_PANELS {
-            return Err(PictureError::TooManyPanels {
-                panels: self.panels.len(),
-            });
+            return Err(PictureError::TooManyPanels { panels: self.panels.len() });
         }
         let view = View::new(YAW, PITCH);
         let contents: Vec<Content> = contents(&self.panels, &view);
         let frame = shared_frame(&self.panels, &contents, &view);
-        let drawn = contents
-            .iter()
-            .any(|content| matches!(content, Content::Cloth));
+        let drawn = contents.iter().any(|content| matches!(content, Content::Cloth));
 
-        let mut keys = Keys {
-            outline_of: None,
-            pins: false,
-            pixels_per_metre: drawn.then_some(1.0),
-        };
-        let outlined = self
-            .outline_of
-            .filter(|&i| matches!(contents.get(i), Some(Content::Cloth)));
-        keys.outline_of = outlined
-            .filter(|_| self.panels.len() > 1)
-            .map(|i| self.panels[i].heading.clone());
-        keys.pins = self
-            .panels
-            .iter()
-            .any(|panel| !panel.grid.pins().is_empty());
+        let mut keys = Keys { outline_of: None, pins: false, pixels_per_metre: drawn.then_some(1.0) };
+        let outlined = self.outline_of.filter(|&i| matches!(contents.get(i), Some(Content::Cloth)));
+        keys.outline_of = outlined.filter(|_| self.panels.len() > 1).map(|i| self.panels[i].heading.clone());
+        keys.pins = self.panels.iter().any(|panel| !panel.grid.pins().is_empty());
 
         let layout = Layout::new(self, &frame, &keys);
         let window = layout.window(0);
-        let camera = Camera::fit(
-            view,
-            &frame,
-            window.width as usize,
-            window.height as usize,
-            CLOTH_MARGIN,
-        );
+        let camera = Camera::fit(view, &frame, window.width as usize, window.height as usize, CLOTH_MARGIN);
         keys.pixels_per_metre = drawn.then(|| camera.pixels_per_metre());
 
         let outlines = outlined
-            .map(|reference| {
-                contour::outlines(&self.shaded(&camera, window, &self.panels[reference]))
-            })
+            .map(|reference| contour::outlines(&self.shaded(&camera, window, &self.panels[reference])))
             .unwrap_or_default();
         let mut canvas = Canvas::new(layout.width as u32, layout.height as u32, PAPER);
         self.draw_header(&mut canvas, &layout);
@@ -184,23 +157,14 @@ impl Sheet {
                     }
                     card::draw_pins(&mut canvas, window, &camera, &panel.grid);
                 }
-                Content::NotFinite => {
-                    card::draw_alarm(&mut canvas, window, "NOT FINITE", "the simulation blew up")
-                }
-                Content::OffScale => {
-                    card::draw_alarm(&mut canvas, window, "OFF THE SCALE", "finite, but far away")
-                }
+                Content::NotFinite => card::draw_alarm(&mut canvas, window, "NOT FINITE", "the simulation blew up"),
+                Content::OffScale => card::draw_alarm(&mut canvas, window, "OFF THE SCALE", "finite, but far away"),
             }
         }
         legend::draw(&mut canvas, layout.legend, &self.style, &keys);
         for (i, line) in layout.footer_lines.iter().enumerate() {
             let y = layout.footer_top + i as i32 * FOOTER_LINE;
-            let area = Area {
-                x: MARGIN,
-                y,
-                width: layout.width - 2 * MARGIN,
-                height: Face::Small.height(),
-            };
+            let area = Area { x: MARGIN, y, width: layout.width - 2 * MARGIN, height: Face::Small.height() };
             write(&mut canvas, area, line, Face::Small, Align::Left, SOFT_INK);
         }
         Ok(canvas.into_image())
@@ -229,20 +193,10 @@ impl Sheet {
             .find(|face| face.width(&self.title) <= width)
             .unwrap_or(Face::Heading);
         let y = MARGIN + (Face::Title.height() - face.height()) / 2;
-        let area = Area {
-            x: MARGIN,
-            y,
-            width,
-            height: face.height(),
-        };
+        let area = Area { x: MARGIN, y, width, height: face.height() };
         write(canvas, area, &self.title, face, Align::Left, INK);
         if let Some(subtitle) = &self.subtitle {
-            let area = Area {
-                x: MARGIN,
-                y: MARGIN + Face::Title.height() + 4,
-                width,
-                height: Face::Body.height(),
-            };
+            let area = Area { x: MARGIN, y: MARGIN + Face::Title.height() + 4, width, height: Face::Body.height() };
             write(canvas, area, subtitle, Face::Body, Align::Left, SOFT_INK);
         }
     }
@@ -262,17 +216,13 @@ mod tests {
                 [column, -row * stretch, 0.05 * (column * 12.0).sin() * row]
             })
             .collect();
-        Grid::new(&positions, 12, 12, 1.0, 1.0)
-            .and_then(|grid| grid.with_pins(&[0, 11]))
-            .expect("a grid")
+        Grid::new(&positions, 12, 12, 1.0, 1.0).and_then(|grid| grid.with_pins(&[0, 11])).expect("a grid")
     }
 
     fn sheet(panels: usize) -> Sheet {
         (0..panels).fold(Sheet::new("denim").subtitle("hang2"), |sheet, i| {
             let stretch = 1.0 + 0.05 * i as f32;
-            sheet.panel(
-                Panel::new(format!("panel {i}"), hanging(stretch)).line("max 5.5 %  p99 1.2 %"),
-            )
+            sheet.panel(Panel::new(format!("panel {i}"), hanging(stretch)).line("max 5.5 %  p99 1.2 %"))
         })
     }
 
@@ -280,47 +230,26 @@ mod tests {
         image
             .as_raw()
             .iter()
-            .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-            })
+            .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
     }
 
     fn part(image: &RgbImage, area: Area) -> Vec<u8> {
-        image::imageops::crop_imm(
-            image,
-            area.x as u32,
-            area.y as u32,
-            area.width as u32,
-            area.height as u32,
-        )
-        .to_image()
-        .into_raw()
+        image::imageops::crop_imm(image, area.x as u32, area.y as u32, area.width as u32, area.height as u32)
+            .to_image()
+            .into_raw()
     }
 
     fn layout_of(sheet: &Sheet) -> Layout {
         let view = View::new(YAW, PITCH);
         let frame = shared_frame(&sheet.panels, &contents(&sheet.panels, &view), &view);
-        Layout::new(
-            sheet,
-            &frame,
-            &Keys {
-                outline_of: None,
-                pins: true,
-                pixels_per_metre: Some(1.0),
-            },
-        )
+        Layout::new(sheet, &frame, &Keys { outline_of: None, pins: true, pixels_per_metre: Some(1.0) })
     }
 
     #[test]
     fn the_same_sheet_has_the_same_pixels_and_another_has_others() {
         let draw = |panels: usize| hash(&sheet(panels).outline_of(0).render().expect("drawn"));
         assert_eq!(draw(3), draw(3));
-        let other = sheet(3)
-            .style(Style {
-                fabric: [120, 120, 120],
-                ..Style::default()
-            })
-            .outline_of(0);
+        let other = sheet(3).style(Style { fabric: [120, 120, 120], ..Style::default() }).outline_of(0);
         assert_ne!(draw(3), hash(&other.render().expect("drawn")));
     }
 
@@ -331,10 +260,7 @@ mod tests {
             let layout = layout_of(&sheet);
             if [1, 3, MAX_PANELS].contains(&panels) {
                 let image = sheet.render().expect("drawn");
-                assert_eq!(
-                    (image.width() as i32, image.height() as i32),
-                    (layout.width, layout.height)
-                );
+                assert_eq!((image.width() as i32, image.height() as i32), (layout.width, layout.height));
             }
             for i in 0..panels {
                 let card = layout.card(i);
@@ -347,14 +273,8 @@ mod tests {
             }
             assert!(layout.legend.y + layout.legend.height <= layout.footer_top);
         }
-        assert!(matches!(
-            Sheet::new("none").render(),
-            Err(PictureError::Empty)
-        ));
-        assert!(matches!(
-            sheet(13).render(),
-            Err(PictureError::TooManyPanels { panels: 13 })
-        ));
+        assert!(matches!(Sheet::new("none").render(), Err(PictureError::Empty)));
+        assert!(matches!(sheet(13).render(), Err(PictureError::TooManyPanels { panels: 13 })));
     }
 
     #[test]
@@ -362,59 +282,30 @@ mod tests {
         let plain = sheet(1).panel(Panel::new("b", hanging(1.0)));
         let mut nan = hanging(1.0).positions().to_vec();
         nan[70][1] = f32::NAN;
-        let far: Vec<[f32; 3]> = hanging(1.0)
-            .positions()
-            .iter()
-            .map(|p| p.map(|v| v * 1e30))
-            .collect();
+        let far: Vec<[f32; 3]> = hanging(1.0).positions().iter().map(|p| p.map(|v| v * 1e30)).collect();
         let layout = layout_of(&plain);
         let (first, second) = (layout.card(0), layout.window(1));
         let base = plain.render().expect("drawn");
         let mut seen = vec![part(&base, second)];
-        let farthest: Vec<[f32; 3]> = (0..144)
-            .map(|i| [if i % 2 == 0 { f32::MAX } else { f32::MIN }; 3])
-            .collect();
+        let farthest: Vec<[f32; 3]> = (0..144).map(|i| [if i % 2 == 0 { f32::MAX } else { f32::MIN }; 3]).collect();
         let grid = |positions: &[[f32; 3]]| Grid::new(positions, 12, 12, 1.0, 1.0).expect("a grid");
-        let image = sheet(1)
-            .panel(Panel::new("b", grid(&farthest)))
-            .render()
-            .expect("drawn");
+        let image = sheet(1).panel(Panel::new("b", grid(&farthest))).render().expect("drawn");
         assert_eq!(part(&image, first), part(&base, first));
-        let alone = Sheet::new("far")
-            .panel(Panel::new("far", grid(&farthest)))
-            .outline_of(0);
+        let alone = Sheet::new("far").panel(Panel::new("far", grid(&farthest))).outline_of(0);
         assert!(alone.render().is_ok());
         for positions in [nan, far] {
-            let grid = Grid::new(&positions, 12, 12, 1.0, 1.0)
-                .and_then(|grid| grid.with_pins(&[0]))
-                .expect("a grid");
-            let image = sheet(1)
-                .panel(Panel::new("b", grid))
-                .render()
-                .expect("drawn");
-            assert_eq!(
-                part(&image, first),
-                part(&base, first),
-                "the scale is that of the good cloth"
-            );
+            let grid = Grid::new(&positions, 12, 12, 1.0, 1.0).and_then(|grid| grid.with_pins(&[0])).expect("a grid");
+            let image = sheet(1).panel(Panel::new("b", grid)).render().expect("drawn");
+            assert_eq!(part(&image, first), part(&base, first), "the scale is that of the good cloth");
             let window = part(&image, second);
-            let red = window
-                .chunks_exact(3)
-                .filter(|pixel| **pixel == ALARM)
-                .count();
+            let red = window.chunks_exact(3).filter(|pixel| **pixel == ALARM).count();
             assert!(red > 100, "the words are there");
             assert!(!seen.contains(&window), "no cloth, and another message");
             seen.push(window);
         }
         let only_bad = vec![[f32::INFINITY; 3]; 144];
         let grid = Grid::new(&only_bad, 12, 12, 1.0, 1.0).expect("a grid");
-        assert!(
-            Sheet::new("bad")
-                .panel(Panel::new("bad", grid))
-                .outline_of(0)
-                .render()
-                .is_ok()
-        );
+        assert!(Sheet::new("bad").panel(Panel::new("bad", grid)).outline_of(0).render().is_ok());
     }
 
     #[test]
@@ -423,10 +314,7 @@ mod tests {
         let short = sheet(1).panel(Panel::new("b", hanging(1.0)).line("c"));
         let wordy = sheet(1).panel(Panel::new(long.clone(), hanging(1.0)).line(long));
         let layout = layout_of(&short);
-        let (a, b) = (
-            short.render().expect("drawn"),
-            wordy.render().expect("drawn"),
-        );
+        let (a, b) = (short.render().expect("drawn"), wordy.render().expect("drawn"));
         let card = layout.card(1);
         for (x, y, pixel) in a.enumerate_pixels() {
             let (x, y) = (x as i32, y as i32);
@@ -441,13 +329,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("sheet.png");
         sheet(2).save(&path).expect("written");
-        assert_eq!(
-            image::open(&path).expect("a PNG").to_rgb8(),
-            sheet(2).render().expect("drawn")
-        );
-        let error = sheet(2)
-            .save(&folder.path().join("nowhere").join("sheet.png"))
-            .expect_err("refused");
+        assert_eq!(image::open(&path).expect("a PNG").to_rgb8(), sheet(2).render().expect("drawn"));
+        let error = sheet(2).save(&folder.path().join("nowhere").join("sheet.png")).expect_err("refused");
         assert!(error.to_string().contains("nowhere"), "{error}");
     }
 }

@@ -78,20 +78,13 @@ pub fn write(canvas: &mut Canvas, area: Area, text: &str, face: Face, align: Ali
         };
     let (weight, height) = face.font();
     for (i, character) in text.chars().enumerate() {
-        let Some(glyph) =
-            get_raster(character, weight, height).or_else(|| get_raster('?', weight, height))
-        else {
+        let Some(glyph) = get_raster(character, weight, height).or_else(|| get_raster('?', weight, height)) else {
             continue;
         };
         let x0 = left + i as i32 * face.advance();
         for (dy, row) in glyph.rows().enumerate() {
             for (dx, &opacity) in row.iter().enumerate() {
-                canvas.blend(
-                    x0 + dx as i32,
-                    area.y + dy as i32,
-                    color,
-                    f32::from(opacity) / 255.0,
-                );
+                canvas.blend(x0 + dx as i32, area.y + dy as i32, color, f32::from(opacity) / 255.0);
             }
         }
     }
@@ -103,29 +96,16 @@ mod tests {
 
     #[test]
     fn long_text_is_cut_and_never_leaves_its_box() {
-        let area = Area {
-            x: 10,
-            y: 4,
-            width: 100,
-            height: 24,
-        };
+        let area = Area { x: 10, y: 4, width: 100, height: 24 };
         for align in [Align::Left, Align::Center] {
             for face in [Face::Title, Face::Heading, Face::Body, Face::Small] {
                 let mut canvas = Canvas::new(200, 60, [255; 3]);
-                write(
-                    &mut canvas,
-                    area,
-                    &"a heavy blue WWW".repeat(20),
-                    face,
-                    align,
-                    [0; 3],
-                );
+                write(&mut canvas, area, &"a heavy blue WWW".repeat(20), face, align, [0; 3]);
                 let image = canvas.into_image();
                 let mut dark = 0;
                 for y in 0..60 {
                     for x in 0..200 {
-                        let inside =
-                            (10..110).contains(&x) && (4..4 + face.height() as u32).contains(&y);
+                        let inside = (10..110).contains(&x) && (4..4 + face.height() as u32).contains(&y);
                         let drawn = image.get_pixel(x, y).0 != [255; 3];
                         assert!(inside || !drawn, "{face:?} {align:?} at {x} {y}");
                         dark += i32::from(drawn);
@@ -150,12 +130,7 @@ mod tests {
     fn unknown_characters_show_as_a_question_mark() {
         let draw = |text: &str| {
             let mut canvas = Canvas::new(40, 24, [255; 3]);
-            let area = Area {
-                x: 0,
-                y: 0,
-                width: 40,
-                height: 24,
-            };
+            let area = Area { x: 0, y: 0, width: 40, height: 24 };
             write(&mut canvas, area, text, Face::Body, Align::Left, [0; 3]);
             canvas.into_image()
         };

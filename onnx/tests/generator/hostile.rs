@@ -19,10 +19,7 @@ fn text(error: &Error) -> String {
 /// Loads and runs; what comes of it is finite or an error.
 fn try_all(bytes: &[u8]) -> Result<(), Error> {
     let generator = Generator::from_bytes(bytes)?;
-    let correction = generator.correct(&Request {
-        pins: &[(0, 0)],
-        ..Request::new("heavy blue denim")
-    })?;
+    let correction = generator.correct(&Request { pins: &[(0, 0)], ..Request::new("heavy blue denim") })?;
     assert!(correction.field.iter().all(|k| k.is_finite() && *k > 0.0));
     Ok(())
 }
@@ -53,13 +50,7 @@ fn tensor(name: &str, change: impl FnOnce(&mut Tensor)) -> Error {
 }
 
 fn metadata(key: &str, value: &str) -> Error {
-    refused(&changed(|m| {
-        m.metadata_props
-            .iter_mut()
-            .find(|e| e.key == key)
-            .unwrap()
-            .value = value.into()
-    }))
+    refused(&changed(|m| m.metadata_props.iter_mut().find(|e| e.key == key).unwrap().value = value.into()))
 }
 
 #[test]
@@ -102,10 +93,7 @@ fn flip(count: u32, seed: u64, place: impl Fn(u64, usize) -> usize) -> (u32, u32
 #[test]
 fn flipped_bits_anywhere() {
     let (_, taken) = flip(300, 1, |random, length| (random % length as u64) as usize);
-    assert!(
-        taken > 100,
-        "most of the file is weights, where a flip only changes a number"
-    );
+    assert!(taken > 100, "most of the file is weights, where a flip only changes a number");
 }
 
 #[test]
@@ -137,23 +125,12 @@ fn overwritten_stretches() {
 
 #[test]
 fn other_files() {
-    for bytes in [
-        &b""[..],
-        b"\0",
-        b"\x89PNG\r\n\x1a\n",
-        b"hello world, this is no model",
-        &[0xff; 100],
-    ] {
+    for bytes in [&b""[..], b"\0", b"\x89PNG\r\n\x1a\n", b"hello world, this is no model", &[0xff; 100]] {
         let error = try_all(bytes).unwrap_err();
         text(&error);
     }
     let huge = vec![0; MAX_FILE_BYTES + 1];
-    assert_eq!(
-        try_all(&huge),
-        Err(Error::TooLarge {
-            limit: MAX_FILE_BYTES
-        })
-    );
+    assert_eq!(try_all(&huge), Err(Error::TooLarge { limit: MAX_FILE_BYTES }));
     // an ONNX file of someone else
     let error = refused(&changed(|m| m.metadata_props.clear()));
     assert_eq!(error, Error::MetadataMissing { key: "taut.format" });
@@ -161,25 +138,12 @@ fn other_files() {
 
 #[test]
 fn metadata_against_tensors() {
-    assert!(
-        matches!(metadata("taut.grid", "64"), Error::TensorShape { tensor, .. } if tensor == "pin_distance")
-    );
-    assert!(
-        matches!(metadata("taut.noise", "64"), Error::TensorShape { tensor, .. } if tensor == "noise")
-    );
-    assert!(
-        matches!(metadata("taut.tokens", "8"), Error::TensorShape { tensor, .. } if tensor == "tokens")
-    );
+    assert!(matches!(metadata("taut.grid", "64"), Error::TensorShape { tensor, .. } if tensor == "pin_distance"));
+    assert!(matches!(metadata("taut.noise", "64"), Error::TensorShape { tensor, .. } if tensor == "noise"));
+    assert!(matches!(metadata("taut.tokens", "8"), Error::TensorShape { tensor, .. } if tensor == "tokens"));
     let error = metadata("taut.vocabulary", "<pad>\ndenim\nsilk");
-    assert!(
-        matches!(&error, Error::TensorShape { tensor, .. } if tensor == "words"),
-        "{error}"
-    );
-    for (key, value) in [
-        ("taut.grid", "999999999"),
-        ("taut.vocabulary", "<pad>\ndenim\ndenim"),
-        ("taut.format", "2"),
-    ] {
+    assert!(matches!(&error, Error::TensorShape { tensor, .. } if tensor == "words"), "{error}");
+    for (key, value) in [("taut.grid", "999999999"), ("taut.vocabulary", "<pad>\ndenim\ndenim"), ("taut.format", "2")] {
         assert!(matches!(metadata(key, value), Error::Metadata { key: named, .. } if named == key));
     }
     for (key, _) in METADATA {
@@ -190,29 +154,13 @@ fn metadata_against_tensors() {
 
 #[test]
 fn operations_that_do_not_belong() {
-    for op in [
-        "Loop",
-        "If",
-        "Scan",
-        "RandomNormal",
-        "Foo",
-        "NonZero",
-        "ConstantOfShape",
-        "",
-        "Einsum",
-    ] {
+    for op in ["Loop", "If", "Scan", "RandomNormal", "Foo", "NonZero", "ConstantOfShape", "", "Einsum"] {
         let error = node("z", |n| n.op_type = op.into());
-        assert!(
-            matches!(&error, Error::Op { op: named, .. } if named == op),
-            "{error}"
-        );
+        assert!(matches!(&error, Error::Op { op: named, .. } if named == op), "{error}");
     }
     let error = node("y4", |n| n.domain = "com.example".into());
     assert!(text(&error).contains("com.example.Relu"), "{error}");
-    assert!(matches!(
-        node("fabric", |n| n.op_type = "Relu".into()),
-        Error::Graph { .. }
-    ));
+    assert!(matches!(node("fabric", |n| n.op_type = "Relu".into()), Error::Graph { .. }));
 }
 
 #[test]
@@ -222,14 +170,8 @@ fn shapes_that_do_not_fit() {
         _ => panic!("{error}"),
     };
     named(tensor("first.f16", |t| t.dims[0] -= 1), "first.f16");
-    named(
-        tensor("first.f16", |t| t.dims = vec![CHANNELS as i64, 136, 5, 5]),
-        "first",
-    );
-    named(
-        tensor("first.f16", |t| t.dims = vec![136, CHANNELS as i64, 25]),
-        "first",
-    );
+    named(tensor("first.f16", |t| t.dims = vec![CHANNELS as i64, 136, 5, 5]), "first");
+    named(tensor("first.f16", |t| t.dims = vec![136, CHANNELS as i64, 25]), "first");
     named(
         tensor("last.bias.f16", |t| {
             t.dims = vec![2];
@@ -254,37 +196,20 @@ fn shapes_that_do_not_fit() {
     );
     named(tensor("words.f16", |t| t.dims = vec![8, 10]), "words");
     named(tensor("words.f16", |t| t.raw_data.clear()), "words.f16");
-    named(
-        node("x4", |n| n.attribute[2] = ints("pads", &[0; 4])),
-        "pin_distance",
-    );
+    named(node("x4", |n| n.attribute[2] = ints("pads", &[0; 4])), "pin_distance");
     // sizes that no machine has
-    for dims in [
-        vec![i64::MAX],
-        vec![1 << 40, 1 << 40],
-        vec![-1],
-        vec![0],
-        vec![1; 100],
-        vec![i64::MIN, 2],
-    ] {
+    for dims in [vec![i64::MAX], vec![1 << 40, 1 << 40], vec![-1], vec![0], vec![1; 100], vec![i64::MIN, 2]] {
         let error = tensor("words.f16", |t| t.dims = dims);
         assert!(text(&error).contains("words.f16"), "{error}");
     }
-    let error = tensor("scales", |t| {
-        t.raw_data = [1f32, 1.0, 1e9, 1e9]
-            .iter()
-            .flat_map(|x| x.to_le_bytes())
-            .collect()
-    });
+    let error = tensor("scales", |t| t.raw_data = [1f32, 1.0, 1e9, 1e9].iter().flat_map(|x| x.to_le_bytes()).collect());
     assert!(text(&error).contains("y32"), "{error}");
     let bomb = |b: &mut Builder| {
         b.integers("wide", &[1 << 20, 1 << 20, 128]);
         b.op("Expand", &["noise", "wide"], "bomb", vec![]);
     };
     let error = graph(|g| {
-        let mut b = Builder {
-            graph: std::mem::take(g),
-        };
+        let mut b = Builder { graph: std::mem::take(g) };
         bomb(&mut b);
         *g = b.graph;
     });
@@ -393,47 +318,14 @@ fn graphs_that_are_put_together_wrongly() {
     );
     reason(graph(|g| g.input[0].name = "words".into()), "tokens");
     reason(graph(|g| g.input[0].of = None), "type");
-    reason(
-        graph(|g| {
-            g.input[0]
-                .of
-                .as_mut()
-                .unwrap()
-                .tensor
-                .as_mut()
-                .unwrap()
-                .elem_type = FLOAT
-        }),
-        "I64",
-    );
-    reason(
-        graph(|g| {
-            g.output[0]
-                .of
-                .as_mut()
-                .unwrap()
-                .tensor
-                .as_mut()
-                .unwrap()
-                .shape = None
-        }),
-        "field",
-    );
+    reason(graph(|g| g.input[0].of.as_mut().unwrap().tensor.as_mut().unwrap().elem_type = FLOAT), "I64");
+    reason(graph(|g| g.output[0].of.as_mut().unwrap().tensor.as_mut().unwrap().shape = None), "field");
     reason(graph(|g| g.initializer[0].name = "tokens".into()), "twice");
     reason(refused(&changed(|m| m.graph = None)), "missing");
     reason(refused(&changed(|m| m.ir_version = 3)), "IR version");
-    reason(
-        refused(&changed(|m| m.opset_import[0].version = 9)),
-        "operator set 17",
-    );
-    reason(
-        refused(&changed(|m| m.opset_import.clear())),
-        "operator set 17",
-    );
-    reason(
-        refused(&changed(|m| m.opset_import[0].domain = "ai.onnx.ml".into())),
-        "operator set 17",
-    );
+    reason(refused(&changed(|m| m.opset_import[0].version = 9)), "operator set 17");
+    reason(refused(&changed(|m| m.opset_import.clear())), "operator set 17");
+    reason(refused(&changed(|m| m.opset_import[0].domain = "ai.onnx.ml".into())), "operator set 17");
     // the fabric must not change with the seed
     reason(
         node("told", |n| {
@@ -443,9 +335,7 @@ fn graphs_that_are_put_together_wrongly() {
         "head_bias",
     );
     let error = graph(|g| {
-        let mut b = Builder {
-            graph: std::mem::take(g),
-        };
+        let mut b = Builder { graph: std::mem::take(g) };
         b.graph.node.retain(|n| n.output[0] != "fabric");
         b.integers("five", &[1, -1]);
         b.weight("mix", &[NOISE, 5], &vec![0.1; NOISE * 5]);
@@ -457,12 +347,7 @@ fn graphs_that_are_put_together_wrongly() {
     reason(error, "more than the words");
     reason(
         graph(|g| {
-            g.node = (0..2000)
-                .map(|i| Node {
-                    output: vec![format!("n{i}")],
-                    ..Node::default()
-                })
-                .collect();
+            g.node = (0..2000).map(|i| Node { output: vec![format!("n{i}")], ..Node::default() }).collect();
         }),
         "1000",
     );
@@ -470,10 +355,7 @@ fn graphs_that_are_put_together_wrongly() {
 
 #[test]
 fn tensors_that_are_not_in_the_file() {
-    let external = Entry {
-        key: "location".into(),
-        value: "/etc/passwd".into(),
-    };
+    let external = Entry { key: "location".into(), value: "/etc/passwd".into() };
     let error = tensor("first.f16", |t| {
         t.raw_data.clear();
         t.external_data = vec![external];
@@ -493,24 +375,11 @@ fn tensors_that_are_not_in_the_file() {
 
 #[test]
 fn weights_that_are_not_finite() {
-    for (name, bits) in [
-        ("words.f16", half(f32::NAN)),
-        ("first.f16", half(f32::INFINITY)),
-        ("last.bias.f16", 0xfc00),
-    ] {
-        let error = tensor(name, |t| {
-            t.raw_data[2..4].copy_from_slice(&bits.to_le_bytes())
-        });
-        assert_eq!(
-            error,
-            Error::Weights {
-                tensor: name.into()
-            }
-        );
+    for (name, bits) in [("words.f16", half(f32::NAN)), ("first.f16", half(f32::INFINITY)), ("last.bias.f16", 0xfc00)] {
+        let error = tensor(name, |t| t.raw_data[2..4].copy_from_slice(&bits.to_le_bytes()));
+        assert_eq!(error, Error::Weights { tensor: name.into() });
     }
     // finite, and yet its root is not
-    let error = tensor("normal.var.f16", |t| {
-        t.raw_data[..2].copy_from_slice(&half(-1.0).to_le_bytes())
-    });
+    let error = tensor("normal.var.f16", |t| t.raw_data[..2].copy_from_slice(&half(-1.0).to_le_bytes()));
     assert!(text(&error).contains("variance"), "{error}");
 }

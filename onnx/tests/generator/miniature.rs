@@ -17,33 +17,14 @@ pub const WIDTH: usize = 8;
 /// Channels of the first layer.
 pub const CHANNELS: usize = 6;
 pub const NOISE: usize = 128;
-pub const WORDS: [&str; 9] = [
-    "heavy",
-    "blue",
-    "denim",
-    "silk",
-    "cotton",
-    "jersey",
-    "knit",
-    "stretch",
-    "non-woven",
-];
+pub const WORDS: [&str; 9] = ["heavy", "blue", "denim", "silk", "cotton", "jersey", "knit", "stretch", "non-woven"];
 
 pub const METADATA: [(&str, &str); 10] = [
     ("taut.format", "1"),
     ("taut.channels", "warp,weft,shear,bend"),
-    (
-        "taut.channel_ranges_n_per_m",
-        "5:20000,5:20000,1:8000,0.02:400",
-    ),
-    (
-        "taut.fabric",
-        "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal",
-    ),
-    (
-        "taut.fabric_ranges",
-        "0.03:0.8,1e-7:1e-3,0.0005:0.3,0.0005:0.3,0.0005:0.3",
-    ),
+    ("taut.channel_ranges_n_per_m", "5:20000,5:20000,1:8000,0.02:400"),
+    ("taut.fabric", "density_kg_m2,hinge_rigidity_n_m,limit_warp,limit_weft,limit_diagonal"),
+    ("taut.fabric_ranges", "0.03:0.8,1e-7:1e-3,0.0005:0.3,0.0005:0.3,0.0005:0.3"),
     ("taut.grid", "32"),
     ("taut.noise", "128"),
     ("taut.tokens", "16"),
@@ -63,12 +44,7 @@ impl Builder {
         assert_eq!(dims.iter().product::<usize>(), values.len());
         let raw = values.iter().flat_map(|&x| half(x).to_le_bytes()).collect();
         self.store(&format!("{name}.f16"), FLOAT16, dims, raw);
-        self.op(
-            "Cast",
-            &[&format!("{name}.f16")],
-            name,
-            vec![int("to", i64::from(FLOAT))],
-        )
+        self.op("Cast", &[&format!("{name}.f16")], name, vec![int("to", i64::from(FLOAT))])
     }
 
     pub fn floats(&mut self, name: &str, values: &[f32]) -> String {
@@ -81,32 +57,14 @@ impl Builder {
         self.store(name, INT64, &[values.len()], raw)
     }
 
-    pub fn store(
-        &mut self,
-        name: &str,
-        data_type: i32,
-        dims: &[usize],
-        raw_data: Vec<u8>,
-    ) -> String {
+    pub fn store(&mut self, name: &str, data_type: i32, dims: &[usize], raw_data: Vec<u8>) -> String {
         let dims = dims.iter().map(|&d| d as i64).collect();
-        let tensor = Tensor {
-            dims,
-            data_type,
-            name: name.into(),
-            raw_data,
-            ..Tensor::default()
-        };
+        let tensor = Tensor { dims, data_type, name: name.into(), raw_data, ..Tensor::default() };
         self.graph.initializer.push(tensor);
         name.into()
     }
 
-    pub fn op(
-        &mut self,
-        op: &str,
-        input: &[&str],
-        output: &str,
-        attribute: Vec<Attribute>,
-    ) -> String {
+    pub fn op(&mut self, op: &str, input: &[&str], output: &str, attribute: Vec<Attribute>) -> String {
         self.graph.node.push(Node {
             input: input.iter().map(|&s| s.into()).collect(),
             output: vec![output.into()],
@@ -121,25 +79,11 @@ impl Builder {
     /// The model, with the inputs and outputs of the contract declared.
     pub fn finish(mut self) -> Model {
         let declare = |name: &str, elem_type: i32, dims: &[i64]| {
-            let batch = Dimension {
-                size: Some(Size::Open("batch".into())),
-            };
-            let fixed = dims.iter().map(|&d| Dimension {
-                size: Some(Size::Fixed(d)),
-            });
-            let shape = Shape {
-                dim: std::iter::once(batch).chain(fixed).collect(),
-            };
-            let tensor = TensorType {
-                elem_type,
-                shape: Some(shape),
-            };
-            Declared {
-                name: name.into(),
-                of: Some(Type {
-                    tensor: Some(tensor),
-                }),
-            }
+            let batch = Dimension { size: Some(Size::Open("batch".into())) };
+            let fixed = dims.iter().map(|&d| Dimension { size: Some(Size::Fixed(d)) });
+            let shape = Shape { dim: std::iter::once(batch).chain(fixed).collect() };
+            let tensor = TensorType { elem_type, shape: Some(shape) };
+            Declared { name: name.into(), of: Some(Type { tensor: Some(tensor) }) }
         };
         self.graph.name = "miniature".into();
         self.graph.input = vec![
@@ -148,72 +92,41 @@ impl Builder {
             declare("noise", FLOAT, &[NOISE as i64]),
             declare("pin_distance", FLOAT, &[1, 32, 32]),
         ];
-        self.graph.output = vec![
-            declare("field", FLOAT, &[4, 32, 32]),
-            declare("fabric", FLOAT, &[5]),
-        ];
+        self.graph.output = vec![declare("field", FLOAT, &[4, 32, 32]), declare("fabric", FLOAT, &[5])];
         let vocabulary = format!("<pad>\n{}", WORDS.join("\n"));
-        let entry = |key: &str, value: &str| Entry {
-            key: key.into(),
-            value: value.into(),
-        };
+        let entry = |key: &str, value: &str| Entry { key: key.into(), value: value.into() };
         let mut metadata_props: Vec<_> = METADATA.iter().map(|(k, v)| entry(k, v)).collect();
         metadata_props.push(entry("taut.vocabulary", &vocabulary));
         Model {
             ir_version: 8,
             producer_name: "taut".into(),
             graph: Some(self.graph),
-            opset_import: vec![Opset {
-                domain: String::new(),
-                version: 17,
-            }],
+            opset_import: vec![Opset { domain: String::new(), version: 17 }],
             metadata_props,
         }
     }
 }
 
 pub fn int(name: &str, i: i64) -> Attribute {
-    Attribute {
-        name: name.into(),
-        i,
-        kind: 2,
-        ..Attribute::default()
-    }
+    Attribute { name: name.into(), i, kind: 2, ..Attribute::default() }
 }
 
 pub fn float(name: &str, f: f32) -> Attribute {
-    Attribute {
-        name: name.into(),
-        f,
-        kind: 1,
-        ..Attribute::default()
-    }
+    Attribute { name: name.into(), f, kind: 1, ..Attribute::default() }
 }
 
 pub fn text(name: &str, s: &str) -> Attribute {
-    Attribute {
-        name: name.into(),
-        s: s.into(),
-        kind: 3,
-        ..Attribute::default()
-    }
+    Attribute { name: name.into(), s: s.into(), kind: 3, ..Attribute::default() }
 }
 
 pub fn ints(name: &str, ints: &[i64]) -> Attribute {
-    Attribute {
-        name: name.into(),
-        ints: ints.into(),
-        kind: 7,
-        ..Attribute::default()
-    }
+    Attribute { name: name.into(), ints: ints.into(), kind: 7, ..Attribute::default() }
 }
 
 /// Numbers within -scale and scale, rounded to what f16 holds.
 pub fn numbers(seed: u64, count: usize, scale: f32) -> Vec<f32> {
     let uniform = |i| taut::noise::uniform(seed, i as u32) * 2.0 - 1.0;
-    (0..count)
-        .map(|i| unhalf(half(scale * uniform(i))))
-        .collect()
+    (0..count).map(|i| unhalf(half(scale * uniform(i)))).collect()
 }
 
 /// The nearest f16 towards zero, as bits; for numbers below 65504 that are 0 or above 2^-14 in size.
@@ -276,22 +189,12 @@ impl Weights {
 /// The nodes up to the mean word vector `v_text` and the fabric.
 pub fn front(b: &mut Builder, w: &Weights) {
     b.weight("words", &[WORDS.len() + 1, WIDTH], &w.words);
-    b.op(
-        "Gather",
-        &["words", "tokens"],
-        "vectors",
-        vec![int("axis", 0)],
-    );
+    b.op("Gather", &["words", "tokens"], "vectors", vec![int("axis", 0)]);
     b.integers("axis_2", &[2]);
     b.op("Unsqueeze", &["weights", "axis_2"], "shares", vec![]);
     b.op("Mul", &["vectors", "shares"], "shared", vec![]);
     b.integers("axis_1", &[1]);
-    b.op(
-        "ReduceSum",
-        &["shared", "axis_1"],
-        "v_text",
-        vec![int("keepdims", 0)],
-    );
+    b.op("ReduceSum", &["shared", "axis_1"], "v_text", vec![int("keepdims", 0)]);
     b.weight("head", &[WIDTH, 5], &w.head);
     b.op("Gemm", &["v_text", "head"], "told", vec![]);
     b.op("Tanh", &["told"], "fabric", vec![]);
@@ -319,48 +222,23 @@ pub fn normalise(b: &mut Builder, w: &Weights) {
     for (name, values) in ["scale", "bias", "mean", "var"].iter().zip(&w.normal) {
         b.weight(&format!("normal.{name}"), &[CHANNELS], values);
     }
-    let names = [
-        "x4",
-        "normal.scale",
-        "normal.bias",
-        "normal.mean",
-        "normal.var",
-    ];
-    b.op(
-        "BatchNormalization",
-        &names,
-        "n4",
-        vec![float("epsilon", 1e-5)],
-    );
+    let names = ["x4", "normal.scale", "normal.bias", "normal.mean", "normal.var"];
+    b.op("BatchNormalization", &names, "n4", vec![float("epsilon", 1e-5)]);
     b.op("Relu", &["n4"], "y4", vec![]);
 }
 
 /// From `y32` [1, CHANNELS, 32, 32] to the field.
 pub fn last_layer(b: &mut Builder, w: &Weights) {
-    b.op(
-        "Concat",
-        &["y32", "pin_distance"],
-        "y32p",
-        vec![int("axis", 1)],
-    );
+    b.op("Concat", &["y32", "pin_distance"], "y32p", vec![int("axis", 1)]);
     b.weight("last", &[CHANNELS + 1, 4, 3, 3], &w.last);
     b.weight("last.bias", &[4], &w.bias);
     let attributes = vec![ints("kernel_shape", &[3, 3]), ints("pads", &[1, 1, 1, 1])];
-    b.op(
-        "ConvTranspose",
-        &["y32p", "last", "last.bias"],
-        "t",
-        attributes,
-    );
+    b.op("ConvTranspose", &["y32p", "last", "last.bias"], "t", attributes);
     b.op("Tanh", &["t"], "field", vec![]);
 }
 
 pub fn nearest() -> Vec<Attribute> {
-    vec![
-        text("mode", "nearest"),
-        text("coordinate_transformation_mode", "asymmetric"),
-        text("nearest_mode", "floor"),
-    ]
+    vec![text("mode", "nearest"), text("coordinate_transformation_mode", "asymmetric"), text("nearest_mode", "floor")]
 }
 
 /// The whole miniature.

@@ -10,18 +10,8 @@ use crate::miniature::*;
 /// The field of a model for one request.
 fn field(model: &Model) -> Vec<f32> {
     let generator = Generator::from_bytes(&model.encode_to_vec()).unwrap_or_else(|e| panic!("{e}"));
-    let request = Request {
-        seed: 3,
-        pins: &[(0, 0), (0, 31)],
-        ..Request::new("blue silk")
-    };
-    generator
-        .correct(&request)
-        .unwrap()
-        .field
-        .iter()
-        .copied()
-        .collect()
+    let request = Request { seed: 3, pins: &[(0, 0), (0, 31)], ..Request::new("blue silk") };
+    generator.correct(&request).unwrap().field.iter().copied().collect()
 }
 
 /// The miniature with another way from `y4` [1, C, 4, 4] to `y32` [1, C, 32, 32].
@@ -52,12 +42,7 @@ fn nearest_neighbours_by_sizes_scales_and_halves() {
     assert_same(&by_sizes, &expected);
     let half_pixel = upsampled_by(|b| {
         b.floats("scales", &[1.0, 1.0, 8.0, 8.0]);
-        b.op(
-            "Resize",
-            &["y4", "", "scales"],
-            "y32",
-            vec![text("mode", "nearest")],
-        );
+        b.op("Resize", &["y4", "", "scales"], "y32", vec![text("mode", "nearest")]);
     });
     assert_same(&half_pixel, &expected);
     let in_steps = upsampled_by(|b| {
@@ -88,17 +73,10 @@ fn convolutions_and_plain_arithmetic_that_change_nothing() {
     let c = CHANNELS;
     let changed = upsampled_by(|b| {
         // a 1 x 1 convolution with the identity and a bias, which is then taken away again
-        let identity: Vec<f32> = (0..c * c)
-            .map(|i| f32::from(u8::from(i % (c + 1) == 0)))
-            .collect();
+        let identity: Vec<f32> = (0..c * c).map(|i| f32::from(u8::from(i % (c + 1) == 0))).collect();
         b.weight("one", &[c, c, 1, 1], &identity);
         b.weight("half", &[c], &vec![0.5; c]);
-        b.op(
-            "Conv",
-            &["y4", "one", "half"],
-            "a",
-            vec![ints("kernel_shape", &[1, 1])],
-        );
+        b.op("Conv", &["y4", "one", "half"], "a", vec![ints("kernel_shape", &[1, 1])]);
         b.weight("half4", &[1, c, 1, 1], &vec![0.5; c]);
         b.op("Sub", &["a", "half4"], "b", vec![]);
         b.op("Add", &["b", "b"], "d", vec![]);
@@ -123,30 +101,18 @@ fn a_matrix_product_for_the_head() {
     let (expected, w) = (Generator::from_bytes(&bytes()).unwrap(), Weights::new());
     let mut model = model();
     let graph = model.graph.as_mut().unwrap();
-    let told = graph
-        .node
-        .iter_mut()
-        .find(|n| n.output[0] == "told")
-        .unwrap();
+    let told = graph.node.iter_mut().find(|n| n.output[0] == "told").unwrap();
     told.op_type = "MatMul".into();
     let product = Generator::from_bytes(&model.encode_to_vec()).unwrap();
 
     let graph = model.graph.as_mut().unwrap();
-    let told = graph
-        .node
-        .iter_mut()
-        .find(|n| n.output[0] == "told")
-        .unwrap();
+    let told = graph.node.iter_mut().find(|n| n.output[0] == "told").unwrap();
     told.op_type = "Gemm".into();
     told.input = vec!["v_text".into(), "turned".into(), "none".into()];
     told.attribute = vec![int("transB", 1), float("beta", 0.5)];
-    let turned: Vec<f32> = (0..5 * WIDTH)
-        .map(|i| w.head[i % WIDTH * 5 + i / WIDTH])
-        .collect();
+    let turned: Vec<f32> = (0..5 * WIDTH).map(|i| w.head[i % WIDTH * 5 + i / WIDTH]).collect();
     let raw = turned.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let mut b = Builder {
-        graph: graph.clone(),
-    };
+    let mut b = Builder { graph: graph.clone() };
     b.store("turned", FLOAT, &[5, WIDTH], raw);
     b.floats("none", &[0.0; 5]);
     *graph = b.graph;
@@ -162,17 +128,9 @@ fn a_matrix_product_for_the_head() {
 fn words_may_be_widened_after_they_are_gathered() {
     let mut model = model();
     let graph = model.graph.as_mut().unwrap();
-    let cast = graph
-        .node
-        .iter()
-        .position(|n| n.output[0] == "words")
-        .unwrap();
+    let cast = graph.node.iter().position(|n| n.output[0] == "words").unwrap();
     let mut cast = graph.node.remove(cast);
-    let gather = graph
-        .node
-        .iter()
-        .position(|n| n.op_type == "Gather")
-        .unwrap();
+    let gather = graph.node.iter().position(|n| n.op_type == "Gather").unwrap();
     graph.node[gather].input[0] = "words.f16".into();
     graph.node[gather].output[0] = "narrow".into();
     cast.input[0] = "narrow".into();
@@ -188,31 +146,14 @@ fn strides_and_uneven_padding() {
     upsampled_by(|b| {
         let weights = numbers(20, CHANNELS * CHANNELS * 12, 0.3);
         b.weight("wa", &[CHANNELS, CHANNELS, 3, 4], &weights);
-        let attributes = vec![
-            ints("strides", &[2, 3]),
-            ints("pads", &[1, 2, 1, 1]),
-            ints("output_padding", &[1, 0]),
-        ];
+        let attributes = vec![ints("strides", &[2, 3]), ints("pads", &[1, 2, 1, 1]), ints("output_padding", &[1, 0])];
         b.op("ConvTranspose", &["y4", "wa"], "a", attributes);
         b.weight("wb", &[CHANNELS, CHANNELS, 3, 4], &weights);
         let attributes = vec![ints("strides", &[2, 2]), ints("pads", &[2, 1, 1, 1])];
         b.op("Conv", &["a", "wb"], "b", attributes);
-        b.weight(
-            "wc",
-            &[CHANNELS, CHANNELS, 2, 3],
-            &numbers(21, CHANNELS * CHANNELS * 6, 0.3),
-        );
-        b.op(
-            "ConvTranspose",
-            &["b", "wc"],
-            "d",
-            vec![ints("strides", &[2, 2]), ints("pads", &[1, 1, 0, 1])],
-        );
-        b.weight(
-            "wd",
-            &[CHANNELS, CHANNELS, 3, 3],
-            &numbers(22, CHANNELS * CHANNELS * 9, 0.3),
-        );
+        b.weight("wc", &[CHANNELS, CHANNELS, 2, 3], &numbers(21, CHANNELS * CHANNELS * 6, 0.3));
+        b.op("ConvTranspose", &["b", "wc"], "d", vec![ints("strides", &[2, 2]), ints("pads", &[1, 1, 0, 1])]);
+        b.weight("wd", &[CHANNELS, CHANNELS, 3, 3], &numbers(22, CHANNELS * CHANNELS * 9, 0.3));
         b.op("Conv", &["d", "wd"], "e", vec![ints("strides", &[2, 2])]);
         b.integers("sizes", &[1, c, 32, 32]);
         b.op("Resize", &["e", "", "", "sizes"], "y32", nearest());

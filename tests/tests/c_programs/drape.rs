@@ -20,11 +20,7 @@ fn denim_bytes() -> Vec<u8> {
     for k in [2028.0f32, 410.0, 370.0, 8.0] {
         field.extend([k; SIDE * SIDE]);
     }
-    let fabric = Fabric {
-        density_kg_m2: 0.324,
-        hinge_rigidity_n_m: 1.95e-5,
-        stretch_limits: [0.01, 0.03, 0.06],
-    };
+    let fabric = Fabric { density_kg_m2: 0.324, hinge_rigidity_n_m: 1.95e-5, stretch_limits: [0.01, 0.03, 0.06] };
     let mut bytes = vec![0; baked::size(SIDE, SIDE).unwrap()];
     let size = baked::write(SIDE, SIDE, &field, &fabric, 0, "denim", &mut bytes).unwrap();
     assert_eq!(size, bytes.len());
@@ -38,10 +34,7 @@ fn the_committed_field_is_the_one_that_core_writes() {
         std::fs::write(denim(), &bytes).unwrap();
     }
     let committed = std::fs::read(denim()).unwrap();
-    assert!(
-        committed == bytes,
-        "examples/data/denim.tautfield differs; TAUT_BLESS=1 rewrites it"
-    );
+    assert!(committed == bytes, "examples/data/denim.tautfield differs; TAUT_BLESS=1 rewrites it");
 }
 
 /// The run of the examples through core: what they print at the end.
@@ -64,19 +57,13 @@ pub fn through_core() -> (String, String) {
     }
     let stretch = 100.0 * f64::from(cloth.strain().largest);
     assert!(stretch > 0.5 && stretch < 15.0, "{stretch} %");
-    (
-        format!("largest stretch {stretch:.2} %"),
-        format!("state hash {:016x}", cloth.state_hash()),
-    )
+    (format!("largest stretch {stretch:.2} %"), format!("state hash {:016x}", cloth.state_hash()))
 }
 
 #[test]
 fn c_and_cpp_and_rust_give_the_same_bits() {
     let (stretch, hash) = through_core();
-    for (language, source) in [
-        (Language::C11, "examples/c/drape.c"),
-        (Language::Cpp17, "examples/cpp/drape.cpp"),
-    ] {
+    for (language, source) in [(Language::C11, "examples/c/drape.c"), (Language::Cpp17, "examples/cpp/drape.cpp")] {
         let printed = run_all(language, &[root().join(source)], &[denim()]);
         assert!(printed.lines().any(|l| l == stretch), "{source}: {printed}");
         assert!(printed.lines().any(|l| l == hash), "{source}: {printed}");

@@ -53,18 +53,7 @@ fn structures_and_values_are_those_of_rust() {
          #define REQUIRE(c) do { if (!(c)) { printf(\"%s\\n\", #c); failed = 1; } } while (0)\n",
     );
     let t = &mut text;
-    structure!(
-        t,
-        types::GridDef,
-        "taut_grid_def",
-        size,
-        cookie,
-        rows,
-        columns,
-        width_m,
-        height_m,
-        families
-    );
+    structure!(t, types::GridDef, "taut_grid_def", size, cookie, rows, columns, width_m, height_m, families);
     structure!(
         t,
         types::ClothDef,
@@ -88,24 +77,8 @@ fn structures_and_values_are_those_of_rust() {
         v_axis
     );
     structure!(t, types::Memory, "taut_memory", size, align);
-    structure!(
-        t,
-        types::Counts,
-        "taut_counts",
-        rows,
-        columns,
-        particles,
-        springs
-    );
-    structure!(
-        t,
-        types::BudgetReport,
-        "taut_budget_report",
-        dt_s,
-        max_dt_s,
-        cut_fraction,
-        inertia_added
-    );
+    structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
+    structure!(t, types::BudgetReport, "taut_budget_report", dt_s, max_dt_s, cut_fraction, inertia_added);
     structure!(
         t,
         types::Fabric,
@@ -116,30 +89,9 @@ fn structures_and_values_are_those_of_rust() {
         limit_weft,
         limit_diagonal
     );
-    structure!(
-        t,
-        types::FieldInfo,
-        "taut_field",
-        seed,
-        description_hash,
-        rows,
-        columns,
-        fabric,
-        reserved
-    );
+    structure!(t, types::FieldInfo, "taut_field", seed, description_hash, rows, columns, fabric, reserved);
     structure!(t, types::Strain, "taut_strain", largest, mean);
-    structure!(
-        t,
-        types::PositionView,
-        "taut_position_view",
-        origin_m,
-        x,
-        y,
-        z,
-        row_stride,
-        rows,
-        columns
-    );
+    structure!(t, types::PositionView, "taut_position_view", origin_m, x, y, z, row_stride, rows, columns);
     for error in Error::ALL {
         let name = c_name(error);
         writeln!(t, "_Static_assert({name} == {}, \"{name}\");", error.code()).unwrap();
@@ -151,10 +103,7 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_BUDGET_TUNED", taut::Budget::Tuned as i64),
         ("TAUT_FAMILY_ALL", i64::from(taut::Families::ALL.0)),
         ("TAUT_FEATURE_PULL", i64::from(Features::PULL.0)),
-        (
-            "TAUT_STEP_NON_FINITE",
-            i64::from(taut::StepFlags::NON_FINITE.0),
-        ),
+        ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
         ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
         ("(sizeof(taut_result))", 4),
         ("(sizeof(taut_budget))", 4),
@@ -165,16 +114,8 @@ fn structures_and_values_are_those_of_rust() {
     t.push_str("int main(void)\n{\n    int failed = 0;\n");
     for error in Error::ALL {
         let (name, message) = (c_name(error), error.message());
-        writeln!(
-            t,
-            "    REQUIRE(!strcmp(taut_result_name({name}), \"{name}\"));"
-        )
-        .unwrap();
-        writeln!(
-            t,
-            "    REQUIRE(!strcmp(taut_result_message({name}), \"{message}\"));"
-        )
-        .unwrap();
+        writeln!(t, "    REQUIRE(!strcmp(taut_result_name({name}), \"{name}\"));").unwrap();
+        writeln!(t, "    REQUIRE(!strcmp(taut_result_message({name}), \"{message}\"));").unwrap();
     }
     t.push_str(
         "    REQUIRE(!strcmp(taut_result_name(TAUT_OK), \"TAUT_OK\"));\n\
@@ -193,8 +134,7 @@ fn structures_and_values_are_those_of_rust() {
 fn defaults(t: &mut String) {
     let g = GridDef::default();
     writeln!(t, "    taut_grid_def g = taut_grid_def_default();").unwrap();
-    let mut equal =
-        |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == {value:?}f);").unwrap();
+    let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == {value:?}f);").unwrap();
     equal("(float)g.rows", g.rows.into());
     equal("(float)g.columns", g.columns.into());
     equal("g.width_m", g.width_m.into());
@@ -202,8 +142,7 @@ fn defaults(t: &mut String) {
     equal("(float)g.families", g.families.0.into());
     writeln!(t, "    taut_cloth_def d = taut_cloth_def_default(NULL);").unwrap();
     let d = ClothDef::default();
-    let mut equal =
-        |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == (float){value:?});").unwrap();
+    let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == (float){value:?});").unwrap();
     equal("d.rate_hz", d.rate_hz.into());
     equal("(float)d.substeps", d.substeps.into());
     equal("d.density_kg_m2", d.density_kg_m2.into());
@@ -248,33 +187,21 @@ fn the_macro_for_static_storage_is_the_query() {
          }\n\
          int main(void)\n{\n    int failed = 0;\n",
     );
-    for (rows, columns) in [
-        (2, 2),
-        (3, 16),
-        (17, 15),
-        (32, 32),
-        (33, 1),
-        (128, 64),
-        (4096, 4096),
-    ] {
+    for (rows, columns) in [(2, 2), (3, 16), (17, 15), (32, 32), (33, 1), (128, 64), (4096, 4096)] {
         let columns = columns.max(2);
         for families in [1, 3, 5, 7] {
             for features in [0, 1] {
                 for max_pins in [0, 1, 3, rows.min(columns)] {
-                    let grid = Grid::new(&GridDef {
-                        rows,
-                        columns,
-                        families: taut::Families(families),
-                        ..GridDef::default()
-                    })
-                    .unwrap();
-                    let def = ClothDef {
-                        features: Features(features),
-                        max_pins,
-                        ..ClothDef::default()
-                    };
+                    let grid =
+                        Grid::new(&GridDef { rows, columns, families: taut::Families(families), ..GridDef::default() })
+                            .unwrap();
+                    let def = ClothDef { features: Features(features), max_pins, ..ClothDef::default() };
                     let bytes = 1024 + 4 * Cloth::memory(&grid, &def).unwrap();
-                    writeln!(text, "    failed |= row({rows}, {columns}, {families}, {features}, {max_pins}, {bytes}u);").unwrap();
+                    writeln!(
+                        text,
+                        "    failed |= row({rows}, {columns}, {families}, {features}, {max_pins}, {bytes}u);"
+                    )
+                    .unwrap();
                 }
             }
         }

@@ -7,10 +7,7 @@ use std::sync::OnceLock;
 
 /// The root of the workspace.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("tests lies in the workspace")
-        .to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests lies in the workspace").to_path_buf()
 }
 
 /// The folder with libtaut.a and libtaut.so of `cargo build --release -p taut-ffi`.
@@ -21,14 +18,7 @@ pub fn library() -> &'static Path {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
         build
-            .args([
-                "build",
-                "--release",
-                "--locked",
-                "-p",
-                "taut-ffi",
-                "--target-dir",
-            ])
+            .args(["build", "--release", "--locked", "-p", "taut-ffi", "--target-dir"])
             .arg(&target)
             .current_dir(root())
             // what the tests themselves are built with (coverage, sanitizers) is no business of the library
@@ -72,13 +62,7 @@ impl Language {
 }
 
 /// Compiles sources to the program `out` with every warning an error.
-pub fn compile(
-    compiler: &str,
-    language: Language,
-    sources: &[PathBuf],
-    linking: Linking,
-    out: &Path,
-) {
+pub fn compile(compiler: &str, language: Language, sources: &[PathBuf], linking: Linking, out: &Path) {
     let mut command = Command::new(compiler);
     command
         .arg(match language {
@@ -132,9 +116,7 @@ pub fn run_all(language: Language, sources: &[PathBuf], arguments: &[PathBuf]) -
 
 /// Runs a command that must succeed.
 pub fn succeed(command: &mut Command) -> Output {
-    let output = command
-        .output()
-        .unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
     assert!(
         output.status.success(),
         "{command:?}: {}\n{}{}",

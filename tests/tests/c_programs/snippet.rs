@@ -8,11 +8,7 @@ fn the_snippet_compiles_and_drapes() {
     let folder = tempfile::tempdir().unwrap();
     let main = folder.path().join("main.c");
     std::fs::write(&main, MAIN).unwrap();
-    let printed = run_all(
-        Language::C11,
-        &[root().join("docs/snippet.c"), main],
-        &[denim()],
-    );
+    let printed = run_all(Language::C11, &[root().join("docs/snippet.c"), main], &[denim()]);
     assert_eq!(printed, "60 frames, 2 pins\n");
 }
 
@@ -51,9 +47,6 @@ fn the_readme_shows_that_very_text() {
         return;
     };
     if readme.contains("```c\n") {
-        assert!(
-            readme.contains(&format!("```c\n{}\n```", snippet.trim_end())),
-            "README.md must show docs/snippet.c"
-        );
+        assert!(readme.contains(&format!("```c\n{}\n```", snippet.trim_end())), "README.md must show docs/snippet.c");
     }
 }

@@ -53,10 +53,11 @@ impl<B: Backend> Backward<B, 1> for ShapesAtRest {
         // A gradient that cannot be read is answered with NaN, which the training loop looks for: this trait knows no
         // errors, and a panic would say less.
         let lost = || vec![f32::NAN; batch.len() * length];
-        let gradient = match read_sync(B::float_into_data(by_position)).map(|d| d.convert::<f32>().try_into_vec::<f32>()) {
-            Ok(Ok(by_position)) => vjp(&batch, &by_position, length),
-            _ => lost(),
-        };
+        let gradient =
+            match read_sync(B::float_into_data(by_position)).map(|d| d.convert::<f32>().try_into_vec::<f32>()) {
+                Ok(Ok(by_position)) => vjp(&batch, &by_position, length),
+                _ => lost(),
+            };
         let data = TensorData::new(gradient, [batch.len(), CHANNELS, rows, columns]);
         grads.register::<B>(field.id, B::float_from_data(data, &device));
     }

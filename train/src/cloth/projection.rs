@@ -42,7 +42,9 @@ impl Budget {
     /// Largest eigenvalue of B_i in N/m that particle `i` carries: f (4/dt^2 - 2 c/dt) M_i. Damping enters the
     /// stability limit of symplectic Euler as omega^2 dt^2 < 4 - 2 c dt.
     fn cap(&self, i: usize) -> f64 {
-        self.fraction * (4.0 / (self.dt_s * self.dt_s) - 2.0 * self.damping_per_s / self.dt_s) * self.inertial_mass_kg[i]
+        self.fraction
+            * (4.0 / (self.dt_s * self.dt_s) - 2.0 * self.damping_per_s / self.dt_s)
+            * self.inertial_mass_kg[i]
     }
 }
 
@@ -219,7 +221,11 @@ mod tests {
                     loss(&f)
                 };
                 let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
-                assert!((difference - gradient[j]).abs() < 1e-5 * (0.1 + difference.abs()), "{difference} {}", gradient[j]);
+                assert!(
+                    (difference - gradient[j]).abs() < 1e-5 * (0.1 + difference.abs()),
+                    "{difference} {}",
+                    gradient[j]
+                );
             }
         }
     }

@@ -21,7 +21,8 @@ pub(super) fn hanging_sheet(springs: &Springs) -> Vec<[f64; 3]> {
         .map(|i| {
             let [x, y, _] = springs.hung_flat(i);
             let (u, w) = (x / springs.width_m(), -y / springs.height_m());
-            let waves = ((3.0 * PI * u).sin() + 0.6 * (5.0 * PI * u + 1.0).cos() + 0.4 * (2.0 * PI * u + 3.0 * w).sin()) * w;
+            let waves =
+                ((3.0 * PI * u).sin() + 0.6 * (5.0 * PI * u + 1.0).cos() + 0.4 * (2.0 * PI * u + 3.0 * w).sin()) * w;
             [x, y, WAVES * springs.height_m() * (waves + (PI * u).sin() * (0.3 + w) * w.min(1.0))]
         })
         .collect()

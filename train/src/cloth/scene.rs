@@ -210,12 +210,7 @@ impl Scene {
             return Err(ClothError::Shape { what: "a stiffness field", expected, found });
         }
         match field.iter().position(|k| !(*k >= 0.0 && k.is_finite())) {
-            Some(j) => Err(ClothError::Stiffness {
-                item,
-                channel: j / n,
-                row: j % n / columns,
-                column: j % columns,
-            }),
+            Some(j) => Err(ClothError::Stiffness { item, channel: j / n, row: j % n / columns, column: j % columns }),
             None => Ok(()),
         }
     }

@@ -39,13 +39,10 @@ impl Checkpoint {
     }
 
     /// Writes a checkpoint: `weights` fills a new folder, which then takes the place of the former one.
-    pub fn write(
-        &self,
-        run: &Path,
-        weights: impl FnOnce(&Path) -> Result<(), TrainError>,
-    ) -> Result<(), TrainError> {
+    pub fn write(&self, run: &Path, weights: impl FnOnce(&Path) -> Result<(), TrainError>) -> Result<(), TrainError> {
         let (folder, new, old) = (Checkpoint::folder(run), run.join("checkpoint.new"), run.join("checkpoint.old"));
-        let clear = |p: &Path| if p.exists() { fs::remove_dir_all(p).map_err(|e| TrainError::file(p, e)) } else { Ok(()) };
+        let clear =
+            |p: &Path| if p.exists() { fs::remove_dir_all(p).map_err(|e| TrainError::file(p, e)) } else { Ok(()) };
         clear(&new)?;
         fs::create_dir_all(&new).map_err(|e| TrainError::file(&new, e))?;
         weights(&new)?;

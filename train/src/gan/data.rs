@@ -247,11 +247,7 @@ fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainE
     let k = fabric.stiffness;
     let field: Vec<f32> = (0..16).map(|i| k[i / 4]).collect();
     let field = FieldView::new(4, 2, 2, &field).map_err(TrainError::part)?;
-    let mut def = ClothDef {
-        density_kg_m2: fabric.density_kg_m2,
-        max_pins: scene.max_pins(n),
-        ..ClothDef::default()
-    };
+    let mut def = ClothDef { density_kg_m2: fabric.density_kg_m2, max_pins: scene.max_pins(n), ..ClothDef::default() };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).map_err(TrainError::part)?];
     let mut cloth = Cloth::create(&grid, &def, &mut block).map_err(TrainError::part)?;
     cloth.set_stiffness_field(&field);

@@ -51,11 +51,8 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
 
     let words = word_table(args, out)?;
-    let meta = ExportMeta {
-        model_name: "taut generator".into(),
-        training_digest: config.digest()?,
-        ..ExportMeta::default()
-    };
+    let meta =
+        ExportMeta { model_name: "taut generator".into(), training_digest: config.digest()?, ..ExportMeta::default() };
     let render = RenderConfig { channels: config.picture.clone(), ..RenderConfig::default() };
     let renderer = Arc::new(Renderer::new(render, config.grid, config.grid).map_err(TrainError::part)?);
     let bar = bar("reference cloths", 1000);

@@ -12,8 +12,12 @@ use taut::noise;
 use super::{Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
 use super::{discriminator_loss, generator_loss, weight_penalty};
 use crate::cloth::{self, equilibrium};
-use crate::image::{AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet};
-use crate::nets::{CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig, NOISE};
+use crate::image::{
+    AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
+};
+use crate::nets::{
+    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig, NOISE,
+};
 
 /// What a step trains on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -206,14 +210,10 @@ impl Trainer {
 
     /// Examples of this step, the cloth of each at one of the substeps, and the noise's numbers.
     fn examples(&self) -> (Vec<&Example>, Vec<cloth::Scene>) {
-        let chosen: Vec<&Example> = (0..self.config.batch)
-            .map(|i| &self.data.training[self.draw(2, i, self.data.training.len())])
-            .collect();
-        let cloths = chosen
-            .iter()
-            .enumerate()
-            .map(|(i, e)| e.cloths[self.draw(3, i, e.cloths.len())].clone())
-            .collect();
+        let chosen: Vec<&Example> =
+            (0..self.config.batch).map(|i| &self.data.training[self.draw(2, i, self.data.training.len())]).collect();
+        let cloths =
+            chosen.iter().enumerate().map(|(i, e)| e.cloths[self.draw(3, i, e.cloths.len())].clone()).collect();
         (chosen, cloths)
     }
 
@@ -222,14 +222,8 @@ impl Trainer {
         let device = field.device();
         let [b, channels, _, _] = field.dims();
         let g = self.config.grid;
-        let (offsets, slopes): (Vec<f32>, Vec<f32>) = self
-            .data
-            .codings()
-            .0
-            .iter()
-            .map(|c| c.line())
-            .map(|(offset, slope)| (offset as f32, slope as f32))
-            .unzip();
+        let (offsets, slopes): (Vec<f32>, Vec<f32>) =
+            self.data.codings().0.iter().map(|c| c.line()).map(|(offset, slope)| (offset as f32, slope as f32)).unzip();
         let column = |v: Vec<f32>| Tensor::<4>::from_data(TensorData::new(v, [1, CHANNELS, 1, 1]), &device);
         let k = (field * column(slopes) + column(offsets)).exp();
         let m = resampling(g);
@@ -287,7 +281,8 @@ impl Trainer {
         // the same augmentations and noise for both sides, drawn anew for each
         let config = AugmentConfig { noise: self.config.picture_noise, ..AugmentConfig::default() };
         let draw = |side: u64| {
-            AugmentBatch::draw(&config, &self.config.picture, self.config.seed ^ side, first, b).map_err(TrainError::part)
+            AugmentBatch::draw(&config, &self.config.picture, self.config.seed ^ side, first, b)
+                .map_err(TrainError::part)
         };
         let real: Vec<f32> = chosen.iter().flat_map(|e| e.picture.iter().copied()).collect();
         let shape = [b, self.config.picture.len(), crate::image::SIDE, crate::image::SIDE];
@@ -301,8 +296,7 @@ impl Trainer {
         };
         let judged = discriminator_loss(&ratings);
         let gradients = GradientsParams::from_grads(judged.backward(), &self.discriminator);
-        self.discriminator =
-            self.discriminator_optimizer.step(self.rate(), self.discriminator.clone(), gradients);
+        self.discriminator = self.discriminator_optimizer.step(self.rate(), self.discriminator.clone(), gradients);
 
         let adversarial = generator_loss(self.discriminator.forward(shown, batch.words));
         let samples = self.data.training.len();
@@ -339,7 +333,8 @@ impl Trainer {
         let mut cloths: Vec<_> = chosen.iter().map(|e| e.cloths[e.cloths.len() / 2].clone()).collect();
         let x = self.hang(out.field, &mut cloths)?;
         let generated = render_images(&self.renderer, x).map_err(TrainError::part)?;
-        let generated: Vec<f32> = generated.into_data().try_into_vec().map_err(|e| TrainError::Part(format!("{e:?}")))?;
+        let generated: Vec<f32> =
+            generated.into_data().try_into_vec().map_err(|e| TrainError::Part(format!("{e:?}")))?;
         let real: Vec<f32> = chosen.iter().flat_map(|e| e.picture.iter().copied()).collect();
         let len = self.renderer.image_len();
         let mut sum = 0.0;

@@ -63,37 +63,13 @@ impl AugmentConfig {
     pub fn check(&self) -> Result<(), ImageError> {
         let [low, high] = self.noise;
         let rules: [(bool, &str, &str); 7] = [
-            (
-                (0.0..=1.0).contains(&self.flip_probability),
-                "flip_probability",
-                "0 to 1",
-            ),
-            (
-                (0.0..=8.0).contains(&self.distortion_px),
-                "distortion_px",
-                "0 to 8",
-            ),
-            (
-                (0.0..=180.0).contains(&self.rotation_deg),
-                "rotation_deg",
-                "0 to 180",
-            ),
-            (
-                (0.0..=32.0).contains(&self.displacement_px),
-                "displacement_px",
-                "0 to 32",
-            ),
+            ((0.0..=1.0).contains(&self.flip_probability), "flip_probability", "0 to 1"),
+            ((0.0..=8.0).contains(&self.distortion_px), "distortion_px", "0 to 8"),
+            ((0.0..=180.0).contains(&self.rotation_deg), "rotation_deg", "0 to 180"),
+            ((0.0..=32.0).contains(&self.displacement_px), "displacement_px", "0 to 32"),
             ((0.0..=1.0).contains(&self.scaling), "scaling", "0 to 1"),
-            (
-                (0.0..=1.0).contains(&self.brightness),
-                "brightness",
-                "0 to 1",
-            ),
-            (
-                low >= 0.0 && low <= high && high <= 0.5,
-                "noise",
-                "two shares in order, 0 to 0.5",
-            ),
+            ((0.0..=1.0).contains(&self.brightness), "brightness", "0 to 1"),
+            (low >= 0.0 && low <= high && high <= 0.5, "noise", "two shares in order, 0 to 0.5"),
         ];
         match rules.into_iter().find(|(good, ..)| !good) {
             Some((_, name, allowed)) => Err(ImageError::Setting { name, allowed }),
@@ -131,27 +107,14 @@ impl Augmentation {
         config.check()?;
         let mut stream = Stream::new(seed, index);
         let mut within = |strength: f64| strength * stream.range(-1.0, 1.0);
-        let distortion =
-            std::array::from_fn(|_| [within(config.distortion_px), within(config.distortion_px)]);
+        let distortion = std::array::from_fn(|_| [within(config.distortion_px), within(config.distortion_px)]);
         let rotation = within(config.rotation_deg.to_radians());
-        let displacement = [
-            within(config.displacement_px),
-            within(config.displacement_px),
-        ];
+        let displacement = [within(config.displacement_px), within(config.displacement_px)];
         let scale = within((1.0 + config.scaling).ln()).exp();
         let gain = 1.0 + within(config.brightness);
         let flip = stream.unit() < config.flip_probability;
         let noise = 2.0 * stream.range(config.noise[0], config.noise[1]);
-        Ok(Self {
-            flip,
-            distortion,
-            rotation,
-            displacement,
-            scale,
-            gain,
-            noise,
-            stream,
-        })
+        Ok(Self { flip, distortion, rotation, displacement, scale, gain, noise, stream })
     }
 
     /// Where in the picture the pixel at `row`, `column` is taken from: x (column) and y (row), in pixels.
@@ -165,17 +128,13 @@ impl Augmentation {
         let ((kr, fr), (kc, fc)) = (knot(row), knot(column));
         let local = |axis: usize| {
             let at = |r: usize, c: usize| self.distortion[(kr + r) * KNOTS + kc + c][axis];
-            (1.0 - fr) * ((1.0 - fc) * at(0, 0) + fc * at(0, 1))
-                + fr * ((1.0 - fc) * at(1, 0) + fc * at(1, 1))
+            (1.0 - fr) * ((1.0 - fc) * at(0, 0) + fc * at(0, 1)) + fr * ((1.0 - fc) * at(1, 0) + fc * at(1, 1))
         };
         let x = (column as f64 - centre - self.displacement[0]) / self.scale;
         let y = (row as f64 - centre - self.displacement[1]) / self.scale;
         let x_turned = cos * x - sin * y + local(0);
         let y_turned = sin * x + cos * y + local(1);
-        [
-            centre + if self.flip { -x_turned } else { x_turned },
-            centre + y_turned,
-        ]
+        [centre + if self.flip { -x_turned } else { x_turned }, centre + y_turned]
     }
 
     /// For every pixel of the answer, the up to four pixels it is made of, with their weights (0 for those outside).
@@ -220,10 +179,7 @@ impl Augmentation {
             let gain = self.gain_of(*channel);
             for (i, taps) in taps.iter().enumerate() {
                 // + 1: the background counts as nothing
-                let light: f64 = taps
-                    .iter()
-                    .map(|(at, weight)| weight * (f64::from(plane[*at]) + 1.0))
-                    .sum();
+                let light: f64 = taps.iter().map(|(at, weight)| weight * (f64::from(plane[*at]) + 1.0)).sum();
                 let noise = pair.take().unwrap_or_else(|| {
                     let [now, next] = stream.gaussians();
                     pair = Some(next);
@@ -253,9 +209,7 @@ impl Augmentation {
     }
 
     fn apply_unchecked(&self, channels: &[Channel], image: &[f32], out: &mut [f32]) {
-        self.before_clamp(channels, image, &self.resampling(), |i, value| {
-            out[i] = value.clamp(-1.0, 1.0) as f32
-        });
+        self.before_clamp(channels, image, &self.resampling(), |i, value| out[i] = value.clamp(-1.0, 1.0) as f32);
     }
 
     /// The vector-Jacobian product of [`Augmentation::apply`]: d loss / d augmented picture to d loss / d picture.
@@ -263,12 +217,7 @@ impl Augmentation {
     ///
     /// # Errors
     /// As [`Augmentation::apply`], for both slices.
-    pub fn vjp(
-        &self,
-        channels: &[Channel],
-        image: &[f32],
-        gradient: &[f32],
-    ) -> Result<Vec<f32>, ImageError> {
+    pub fn vjp(&self, channels: &[Channel], image: &[f32], gradient: &[f32]) -> Result<Vec<f32>, ImageError> {
         expect_len("picture", channels.len() * PIXELS, image.len())?;
         expect_len("gradient", image.len(), gradient.len())?;
         let mut out = vec![0.0; image.len()];
@@ -276,13 +225,7 @@ impl Augmentation {
         Ok(out)
     }
 
-    fn vjp_unchecked(
-        &self,
-        channels: &[Channel],
-        image: &[f32],
-        gradient: &[f32],
-        out: &mut [f32],
-    ) {
+    fn vjp_unchecked(&self, channels: &[Channel], image: &[f32], gradient: &[f32], out: &mut [f32]) {
         let taps = self.resampling();
         let mut sums = vec![0.0f64; image.len()];
         self.before_clamp(channels, image, &taps, |i, value| {
@@ -322,10 +265,7 @@ impl AugmentBatch {
         let each = (0..count as u64)
             .map(|i| Augmentation::draw(config, seed, first.wrapping_add(i)))
             .collect::<Result<_, _>>()?;
-        Ok(Self {
-            channels: channels.to_vec(),
-            each,
-        })
+        Ok(Self { channels: channels.to_vec(), each })
     }
 
     /// Pictures it is for.
@@ -352,20 +292,12 @@ impl AugmentBatch {
     ///
     /// # Errors
     /// [`ImageError::Size`] when `images` is not `len()` pictures.
-    pub fn apply(
-        &self,
-        images: &[f32],
-        threads: std::num::NonZero<usize>,
-    ) -> Result<Vec<f32>, ImageError> {
+    pub fn apply(&self, images: &[f32], threads: std::num::NonZero<usize>) -> Result<Vec<f32>, ImageError> {
         expect_len("pictures", self.len() * self.image_len(), images.len())?;
         Ok(self.apply_unchecked(images, threads))
     }
 
-    pub(super) fn apply_unchecked(
-        &self,
-        images: &[f32],
-        threads: std::num::NonZero<usize>,
-    ) -> Vec<f32> {
+    pub(super) fn apply_unchecked(&self, images: &[f32], threads: std::num::NonZero<usize>) -> Vec<f32> {
         let n = self.image_len();
         let mut out = vec![0.0f32; images.len()];
         let work = |_: &mut (), i: usize, out: &mut [f32]| {
@@ -385,12 +317,7 @@ impl AugmentBatch {
         let mut out = vec![0.0f32; images.len()];
         let work = |_: &mut (), i: usize, out: &mut [f32]| {
             let range = i * n..(i + 1) * n;
-            self.each[i].vjp_unchecked(
-                &self.channels,
-                &images[range.clone()],
-                &gradient[range],
-                out,
-            );
+            self.each[i].vjp_unchecked(&self.channels, &images[range.clone()], &gradient[range], out);
         };
         super::parallel::for_each_chunk(&mut out, n, threads, || (), work);
         out

@@ -93,11 +93,7 @@ impl fmt::Display for ImageError {
             Self::Setting { name, allowed } => {
                 write!(f, "picture setting '{name}' must be {allowed}")
             }
-            Self::Size {
-                name,
-                expected,
-                found,
-            } => write!(f, "{name}: expected {expected} values, found {found}"),
+            Self::Size { name, expected, found } => write!(f, "{name}: expected {expected} values, found {found}"),
             Self::NotFinite { name, index } => write!(f, "{name}: value {index} is not finite"),
             Self::BlackReference => write!(f, "the reference picture is black everywhere"),
             Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
@@ -109,13 +105,5 @@ impl std::error::Error for ImageError {}
 
 /// Checks the length of a slice.
 fn expect_len(name: &'static str, expected: usize, found: usize) -> Result<(), ImageError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(ImageError::Size {
-            name,
-            expected,
-            found,
-        })
-    }
+    if expected == found { Ok(()) } else { Err(ImageError::Size { name, expected, found }) }
 }

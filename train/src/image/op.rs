@@ -68,17 +68,11 @@ fn host<B: Backend>(tensor: FloatTensor<B>) -> Vec<f32> {
 #[backend_extension(Autodiff, Flex)]
 pub trait HostBackend: Backend {
     /// Runs `operation` on `input`, whose first dimension is the batch.
-    fn host_operation(
-        input: FloatTensor<Self>,
-        operation: Arc<dyn HostOperation>,
-    ) -> FloatTensor<Self>;
+    fn host_operation(input: FloatTensor<Self>, operation: Arc<dyn HostOperation>) -> FloatTensor<Self>;
 }
 
 impl HostBackend for Flex {
-    fn host_operation(
-        input: FloatTensor<Self>,
-        operation: Arc<dyn HostOperation>,
-    ) -> FloatTensor<Self> {
+    fn host_operation(input: FloatTensor<Self>, operation: Arc<dyn HostOperation>) -> FloatTensor<Self> {
         let shape = operation.output_shape(input.shape()[0]);
         let device = input.device();
         let output = operation.forward(&host::<Flex>(input));
@@ -87,30 +81,19 @@ impl HostBackend for Flex {
 }
 
 impl<B: HostBackend, C: CheckpointStrategy> HostBackend for Autodiff<B, C> {
-    fn host_operation(
-        input: FloatTensor<Self>,
-        operation: Arc<dyn HostOperation>,
-    ) -> FloatTensor<Self> {
+    fn host_operation(input: FloatTensor<Self>, operation: Arc<dyn HostOperation>) -> FloatTensor<Self> {
         #[derive(Debug)]
         struct HostBackward;
         impl<B: HostBackend> Backward<B, 1> for HostBackward {
             type State = (FloatTensor<B>, Arc<dyn HostOperation>);
-            fn backward(
-                self,
-                ops: Ops<Self::State, 1>,
-                gradients: &mut Gradients,
-                _: &mut Checkpointer,
-            ) {
+            fn backward(self, ops: Ops<Self::State, 1>, gradients: &mut Gradients, _: &mut Checkpointer) {
                 let [parent] = ops.parents;
                 let by_output = gradients.consume::<B>(&ops.node);
                 let Some(parent) = parent else { return };
                 let (input, operation) = ops.state;
                 let (shape, device) = (input.shape(), input.device());
                 let by_input = operation.vjp(&host::<B>(input), &host::<B>(by_output));
-                gradients.register::<B>(
-                    parent.id,
-                    B::float_from_data(TensorData::new(by_input, shape), &device),
-                );
+                gradients.register::<B>(parent.id, B::float_from_data(TensorData::new(by_input, shape), &device));
             }
         }
         let (primitive, node) = input.into_parts();
@@ -119,9 +102,7 @@ impl<B: HostBackend, C: CheckpointStrategy> HostBackend for Autodiff<B, C> {
                 let output = B::host_operation(primitive.clone(), operation.clone());
                 prepared.finish((primitive, operation), output)
             }
-            OpsKind::UnTracked(prepared) => {
-                prepared.finish(B::host_operation(primitive, operation))
-            }
+            OpsKind::UnTracked(prepared) => prepared.finish(B::host_operation(primitive, operation)),
         }
     }
 }
@@ -133,17 +114,10 @@ impl<B: HostBackend, C: CheckpointStrategy> HostBackend for Autodiff<B, C> {
 ///
 /// # Errors
 /// [`ImageError::Size`] when the positions are not of the grid of `renderer`.
-pub fn render_images(
-    renderer: &Arc<Renderer>,
-    positions: Tensor<3>,
-) -> Result<Tensor<4>, ImageError> {
+pub fn render_images(renderer: &Arc<Renderer>, positions: Tensor<3>) -> Result<Tensor<4>, ImageError> {
     let [_, particles, axes] = positions.dims();
     expect_len("positions: axes", 3, axes)?;
-    expect_len(
-        "positions: particles",
-        renderer.positions_len() / 3,
-        particles,
-    )?;
+    expect_len("positions: particles", renderer.positions_len() / 3, particles)?;
     Ok(run(positions, renderer.clone()))
 }
 
@@ -151,17 +125,10 @@ pub fn render_images(
 ///
 /// # Errors
 /// [`ImageError::Size`] when the shape is not that of `augmentations`.
-pub fn augment_images(
-    augmentations: &Arc<AugmentBatch>,
-    images: Tensor<4>,
-) -> Result<Tensor<4>, ImageError> {
+pub fn augment_images(augmentations: &Arc<AugmentBatch>, images: Tensor<4>) -> Result<Tensor<4>, ImageError> {
     let [batch, channels, rows, columns] = images.dims();
     expect_len("pictures", augmentations.len(), batch)?;
-    expect_len(
-        "pictures: channels",
-        augmentations.channels().len(),
-        channels,
-    )?;
+    expect_len("pictures: channels", augmentations.channels().len(), channels)?;
     expect_len("pictures: rows", SIDE, rows)?;
     expect_len("pictures: columns", SIDE, columns)?;
     Ok(run(images, augmentations.clone()))

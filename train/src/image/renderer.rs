@@ -26,12 +26,7 @@ pub struct Camera {
 impl Default for Camera {
     /// For a 1 m x 1 m cloth whose top left particle hangs at the origin, gravity along -y, with room for 20 % of stretch.
     fn default() -> Self {
-        Self {
-            left: -0.25,
-            right: 1.25,
-            bottom: -1.35,
-            top: 0.15,
-        }
+        Self { left: -0.25, right: 1.25, bottom: -1.35, top: 0.15 }
     }
 }
 
@@ -72,47 +67,20 @@ impl Default for RenderConfig {
 
 impl RenderConfig {
     fn check(&self) -> Result<(), ImageError> {
-        let Camera {
-            left,
-            right,
-            bottom,
-            top,
-        } = self.camera;
+        let Camera { left, right, bottom, top } = self.camera;
         let light = self.light.iter().map(|x| x * x).sum::<f64>();
-        let twice = self
-            .channels
-            .iter()
-            .enumerate()
-            .any(|(i, c)| self.channels[..i].contains(c));
+        let twice = self.channels.iter().enumerate().any(|(i, c)| self.channels[..i].contains(c));
         let rules: [(bool, &str, &str); 7] = [
             (
-                [left, right, bottom, top].iter().all(|x| x.abs() < 1e6)
-                    && right - left > 1e-3
-                    && top - bottom > 1e-3,
+                [left, right, bottom, top].iter().all(|x| x.abs() < 1e6) && right - left > 1e-3 && top - bottom > 1e-3,
                 "camera",
                 "finite, with right > left and top > bottom",
             ),
-            (
-                !self.channels.is_empty() && !twice,
-                "channels",
-                "one or more, none twice",
-            ),
+            (!self.channels.is_empty() && !twice, "channels", "one or more, none twice"),
             ((8..=512).contains(&self.samples), "samples", "8 to 512"),
-            (
-                self.checks > 0.0 && self.checks <= 64.0,
-                "checks",
-                "above 0 and at most 64",
-            ),
-            (
-                (0.001..=1.0).contains(&self.depth_softness_m),
-                "depth_softness_m",
-                "0.001 to 1",
-            ),
-            (
-                light > 1e-12 && light < 1e12,
-                "light",
-                "a finite direction, not zero",
-            ),
+            (self.checks > 0.0 && self.checks <= 64.0, "checks", "above 0 and at most 64"),
+            ((0.001..=1.0).contains(&self.depth_softness_m), "depth_softness_m", "0.001 to 1"),
+            (light > 1e-12 && light < 1e12, "light", "a finite direction, not zero"),
             ((0.0..=1.0).contains(&self.ambient), "ambient", "0 to 1"),
         ];
         match rules.into_iter().find(|(good, ..)| !good) {
@@ -151,34 +119,22 @@ impl Renderer {
         config.check()?;
         for (name, n) in [("rows", rows), ("columns", columns)] {
             if !(2..=4096).contains(&n) {
-                return Err(ImageError::Setting {
-                    name,
-                    allowed: "2 to 4096",
-                });
+                return Err(ImageError::Setting { name, allowed: "2 to 4096" });
             }
         }
         let length = config.light.iter().map(|x| x * x).sum::<f64>().sqrt();
         let wave: Vec<f64> = (0..config.samples)
-            .map(|i| {
-                (std::f64::consts::PI * config.checks * (i as f64 + 0.5) / config.samples as f64)
-                    .sin()
-            })
+            .map(|i| (std::f64::consts::PI * config.checks * (i as f64 + 0.5) / config.samples as f64).sin())
             .collect();
         // tanh keeps the borders between the checks soft enough to be sampled
-        let checker = wave
-            .iter()
-            .flat_map(|v| wave.iter().map(move |u| 0.55 + 0.45 * (4.0 * u * v).tanh()))
-            .collect();
+        let checker = wave.iter().flat_map(|v| wave.iter().map(move |u| 0.55 + 0.45 * (4.0 * u * v).tanh())).collect();
         let camera = &config.camera;
         Ok(Self {
             axis_u: Axis::new(columns, config.samples),
             axis_v: Axis::new(rows, config.samples),
             light: config.light.map(|x| x / length),
             checker,
-            scale: [
-                SIDE as f64 / (camera.right - camera.left),
-                SIDE as f64 / (camera.top - camera.bottom),
-            ],
+            scale: [SIDE as f64 / (camera.right - camera.left), SIDE as f64 / (camera.top - camera.bottom)],
             rows,
             columns,
             config,
@@ -218,17 +174,10 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::render`].
-    pub fn render_batch(
-        &self,
-        positions: &[f32],
-        threads: NonZero<usize>,
-    ) -> Result<Vec<f32>, ImageError> {
+    pub fn render_batch(&self, positions: &[f32], threads: NonZero<usize>) -> Result<Vec<f32>, ImageError> {
         self.check_positions(positions)?;
         if let Some(index) = positions.iter().position(|x| !x.is_finite()) {
-            return Err(ImageError::NotFinite {
-                name: "positions",
-                index,
-            });
+            return Err(ImageError::NotFinite { name: "positions", index });
         }
         Ok(self.render_unchecked(positions, threads))
     }
@@ -244,16 +193,9 @@ impl Renderer {
         threads: NonZero<usize>,
     ) -> Result<Vec<f32>, ImageError> {
         self.check_positions(positions)?;
-        expect_len(
-            "gradient",
-            positions.len() / self.positions_len() * self.image_len(),
-            gradient.len(),
-        )?;
+        expect_len("gradient", positions.len() / self.positions_len() * self.image_len(), gradient.len())?;
         if let Some(index) = positions.iter().position(|x| !x.is_finite()) {
-            return Err(ImageError::NotFinite {
-                name: "positions",
-                index,
-            });
+            return Err(ImageError::NotFinite { name: "positions", index });
         }
         Ok(self.vjp_unchecked(positions, gradient, threads))
     }
@@ -272,13 +214,7 @@ impl Renderer {
             &mut images,
             self.image_len(),
             threads,
-            || {
-                (
-                    Scratch::default(),
-                    vec![0.0; n],
-                    vec![0.0; self.image_len()],
-                )
-            },
+            || (Scratch::default(), vec![0.0; n], vec![0.0; self.image_len()]),
             |(scratch, cloth, image), i, out| {
                 widen(&positions[i * n..(i + 1) * n], cloth);
                 self.splat(cloth, scratch);
@@ -290,26 +226,14 @@ impl Renderer {
     }
 
     /// [`Renderer::vjp_batch`] without checks.
-    pub(super) fn vjp_unchecked(
-        &self,
-        positions: &[f32],
-        gradient: &[f32],
-        threads: NonZero<usize>,
-    ) -> Vec<f32> {
+    pub(super) fn vjp_unchecked(&self, positions: &[f32], gradient: &[f32], threads: NonZero<usize>) -> Vec<f32> {
         let (n, m) = (self.positions_len(), self.image_len());
         let mut answer = vec![0.0f32; positions.len()];
         for_each_chunk(
             &mut answer,
             n,
             threads,
-            || {
-                (
-                    GradientScratch::default(),
-                    vec![0.0; n],
-                    vec![0.0; m],
-                    vec![0.0; n],
-                )
-            },
+            || (GradientScratch::default(), vec![0.0; n], vec![0.0; m], vec![0.0; n]),
             |(scratch, cloth, by_image, by_position), i, out| {
                 widen(&positions[i * n..(i + 1) * n], cloth);
                 widen(&gradient[i * m..(i + 1) * m], by_image);

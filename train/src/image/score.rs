@@ -28,11 +28,7 @@ fn check(reference: &[f32], image: &[f32]) -> Result<(), ImageError> {
 }
 
 fn squared_error(reference: &[f32], image: &[f32]) -> f64 {
-    reference
-        .iter()
-        .zip(image)
-        .map(|(a, b)| (intensity(*a) - intensity(*b)).powi(2))
-        .sum()
+    reference.iter().zip(image).map(|(a, b)| (intensity(*a) - intensity(*b)).powi(2)).sum()
 }
 
 /// Peak signal-to-noise ratio, dB: `10 log10(1 / mean squared error)`; infinite for equal pictures.
@@ -51,11 +47,7 @@ pub fn psnr(reference: &[f32], image: &[f32]) -> Result<f64, ImageError> {
 pub fn nmse(reference: &[f32], image: &[f32]) -> Result<f64, ImageError> {
     check(reference, image)?;
     let energy: f64 = reference.iter().map(|a| intensity(*a).powi(2)).sum();
-    if energy > 0.0 {
-        Ok(squared_error(reference, image) / energy)
-    } else {
-        Err(ImageError::BlackReference)
-    }
+    if energy > 0.0 { Ok(squared_error(reference, image) / energy) } else { Err(ImageError::BlackReference) }
 }
 
 /// Structural similarity, at most 1 (Wang, Bovik, Sheikh and Simoncelli, IEEE TIP 13(4), 2004): Gaussian window of
@@ -64,19 +56,11 @@ pub fn nmse(reference: &[f32], image: &[f32]) -> Result<f64, ImageError> {
 ///
 /// # Errors
 /// As [`psnr`]; [`ImageError::Setting`] for channels that are too small.
-pub fn ssim(
-    reference: &[f32],
-    image: &[f32],
-    rows: usize,
-    columns: usize,
-) -> Result<f64, ImageError> {
+pub fn ssim(reference: &[f32], image: &[f32], rows: usize, columns: usize) -> Result<f64, ImageError> {
     check(reference, image)?;
     for (name, n) in [("rows", rows), ("columns", columns)] {
         if !(WINDOW..=1 << 15).contains(&n) {
-            return Err(ImageError::Setting {
-                name,
-                allowed: "11 to 32768",
-            });
+            return Err(ImageError::Setting { name, allowed: "11 to 32768" });
         }
     }
     let pixels = rows * columns;
@@ -84,16 +68,9 @@ pub fn ssim(
     expect_len("picture", planes * pixels, reference.len())?;
     let weights = window();
     let mut sum = 0.0;
-    for (a, b) in reference
-        .chunks_exact(pixels)
-        .zip(image.chunks_exact(pixels))
-    {
+    for (a, b) in reference.chunks_exact(pixels).zip(image.chunks_exact(pixels)) {
         let moment = |f: &dyn Fn(f64, f64) -> f64| {
-            let products: Vec<f64> = a
-                .iter()
-                .zip(b)
-                .map(|(a, b)| f(intensity(*a), intensity(*b)))
-                .collect();
+            let products: Vec<f64> = a.iter().zip(b).map(|(a, b)| f(intensity(*a), intensity(*b))).collect();
             blur(&products, columns, &weights)
         };
         let mean_a = moment(&|a, _| a);
@@ -104,13 +81,8 @@ pub fn ssim(
         let mut plane = 0.0;
         for i in 0..mean_a.len() {
             let (ma, mb) = (mean_a[i], mean_b[i]);
-            let (va, vb, cov) = (
-                square_a[i] - ma * ma,
-                square_b[i] - mb * mb,
-                product[i] - ma * mb,
-            );
-            plane += (2.0 * ma * mb + C1) * (2.0 * cov + C2)
-                / ((ma * ma + mb * mb + C1) * (va + vb + C2));
+            let (va, vb, cov) = (square_a[i] - ma * ma, square_b[i] - mb * mb, product[i] - ma * mb);
+            plane += (2.0 * ma * mb + C1) * (2.0 * cov + C2) / ((ma * ma + mb * mb + C1) * (va + vb + C2));
         }
         sum += plane / mean_a.len() as f64;
     }
@@ -120,8 +92,7 @@ pub fn ssim(
 /// The weights of the window along one axis; they sum to 1.
 fn window() -> [f64; WINDOW] {
     let middle = (WINDOW / 2) as f64;
-    let raw: [f64; WINDOW] =
-        std::array::from_fn(|i| (-0.5 * ((i as f64 - middle) / WINDOW_SIGMA).powi(2)).exp());
+    let raw: [f64; WINDOW] = std::array::from_fn(|i| (-0.5 * ((i as f64 - middle) / WINDOW_SIGMA).powi(2)).exp());
     let sum: f64 = raw.iter().sum();
     raw.map(|w| w / sum)
 }
@@ -130,20 +101,11 @@ fn window() -> [f64; WINDOW] {
 fn blur(plane: &[f64], columns: usize, weights: &[f64; WINDOW]) -> Vec<f64> {
     let rows: Vec<Vec<f64>> = plane
         .chunks_exact(columns)
-        .map(|row| {
-            row.windows(WINDOW)
-                .map(|w| w.iter().zip(weights).map(|(x, w)| x * w).sum())
-                .collect()
-        })
+        .map(|row| row.windows(WINDOW).map(|w| w.iter().zip(weights).map(|(x, w)| x * w).sum()).collect())
         .collect();
     rows.windows(WINDOW)
         .flat_map(|rows| {
-            (0..columns + 1 - WINDOW).map(move |c| {
-                rows.iter()
-                    .zip(weights)
-                    .map(|(row, w)| row[c] * w)
-                    .sum::<f64>()
-            })
+            (0..columns + 1 - WINDOW).map(move |c| rows.iter().zip(weights).map(|(row, w)| row[c] * w).sum::<f64>())
         })
         .collect()
 }
@@ -182,8 +144,7 @@ mod tests {
     #[test]
     fn ssim_of_one_window_is_that_of_the_formula() {
         // one 11 x 11 window: sums over it, not separated, in the plainest way
-        let wave =
-            |i: usize| 0.5 * ((i / 11) as f32 * 0.9).sin() + 0.3 * ((i % 11) as f32 * 0.7).cos();
+        let wave = |i: usize| 0.5 * ((i / 11) as f32 * 0.9).sin() + 0.3 * ((i % 11) as f32 * 0.7).cos();
         let a: Vec<f32> = (0..121).map(wave).collect();
         let b: Vec<f32> = a.iter().map(|x| 0.5 * x - 0.1).collect();
         let mut norm = 0.0;
@@ -208,26 +169,14 @@ mod tests {
         let luminance = (2.0 * ma * mb + 0.0001) / (ma * ma + mb * mb + 0.0001);
         let structure = (2.0 * cov + 0.0009) / (va + vb + 0.0009);
         let found = ssim(&a, &b, 11, 11).unwrap();
-        assert!(
-            (found - luminance * structure).abs() < 1e-9,
-            "{found} {}",
-            luminance * structure
-        );
+        assert!((found - luminance * structure).abs() < 1e-9, "{found} {}", luminance * structure);
         // structure: vb = va / 4 and cov = va / 2, so that the term is about 2 * 0.5 / 1.25 = 0.8
         assert!((structure - 0.8).abs() < 0.02);
     }
 
     #[test]
     fn inverted_structure_scores_below_zero() {
-        let a: Vec<f32> = (0..256)
-            .map(|i| {
-                if (i / 16 + i % 16) % 2 == 0 {
-                    0.5
-                } else {
-                    -0.5
-                }
-            })
-            .collect();
+        let a: Vec<f32> = (0..256).map(|i| if (i / 16 + i % 16) % 2 == 0 { 0.5 } else { -0.5 }).collect();
         let b: Vec<f32> = a.iter().map(|x| -x).collect();
         assert!(ssim(&a, &b, 16, 16).unwrap() < -0.9);
     }
@@ -238,22 +187,9 @@ mod tests {
         let two = |a: f32, b: f32| [flat(a), flat(b)].concat();
         let both = ssim(&two(0.0, 0.2), &two(0.5, 0.2), 11, 11).unwrap();
         assert!((both - 0.5 * (1.0 + 0.7501 / 0.8126)).abs() < 1e-9);
-        assert!(matches!(
-            ssim(&flat(0.0), &flat(0.0), 10, 12),
-            Err(ImageError::Setting { name: "rows", .. })
-        ));
-        assert!(matches!(
-            psnr(&[0.0; 3], &[0.0; 4]),
-            Err(ImageError::Size {
-                expected: 3,
-                found: 4,
-                ..
-            })
-        ));
+        assert!(matches!(ssim(&flat(0.0), &flat(0.0), 10, 12), Err(ImageError::Setting { name: "rows", .. })));
+        assert!(matches!(psnr(&[0.0; 3], &[0.0; 4]), Err(ImageError::Size { expected: 3, found: 4, .. })));
         assert!(matches!(psnr(&[], &[]), Err(ImageError::Size { .. })));
-        assert!(matches!(
-            psnr(&[0.0; 2], &[0.0, f32::NAN]),
-            Err(ImageError::NotFinite { index: 1, .. })
-        ));
+        assert!(matches!(psnr(&[0.0; 2], &[0.0, f32::NAN]), Err(ImageError::NotFinite { index: 1, .. })));
     }
 }

@@ -26,12 +26,7 @@ const PAPER: u8 = 255;
 ///
 /// # Errors
 /// [`ImageError::Setting`] and [`ImageError::Size`] for the arguments, [`ImageError::File`] when `path` cannot be written.
-pub fn write_sheet(
-    path: &Path,
-    real: &[f32],
-    generated: &[f32],
-    layout: SheetLayout,
-) -> Result<(), ImageError> {
+pub fn write_sheet(path: &Path, real: &[f32], generated: &[f32], layout: SheetLayout) -> Result<(), ImageError> {
     let (grey, width, height) = sheet(real, generated, layout)?;
     ::image::save_buffer_with_format(
         path,
@@ -41,30 +36,15 @@ pub fn write_sheet(
         ::image::ExtendedColorType::L8,
         ::image::ImageFormat::Png,
     )
-    .map_err(|error| ImageError::File {
-        path: path.display().to_string(),
-        reason: error.to_string(),
-    })
+    .map_err(|error| ImageError::File { path: path.display().to_string(), reason: error.to_string() })
 }
 
 /// The sheet as grey pixels, with its width and height.
-fn sheet(
-    real: &[f32],
-    generated: &[f32],
-    layout: SheetLayout,
-) -> Result<(Vec<u8>, usize, usize), ImageError> {
-    let SheetLayout {
-        channels,
-        pairs_per_row,
-        zoom,
-    } = layout;
+fn sheet(real: &[f32], generated: &[f32], layout: SheetLayout) -> Result<(Vec<u8>, usize, usize), ImageError> {
+    let SheetLayout { channels, pairs_per_row, zoom } = layout;
     let rules: [(bool, &str, &str); 3] = [
         ((1..=16).contains(&channels), "channels", "1 to 16"),
-        (
-            (1..=64).contains(&pairs_per_row),
-            "pairs_per_row",
-            "1 to 64",
-        ),
+        ((1..=64).contains(&pairs_per_row), "pairs_per_row", "1 to 64"),
         ((1..=8).contains(&zoom), "zoom", "1 to 8"),
     ];
     if let Some((_, name, allowed)) = rules.into_iter().find(|(good, ..)| !good) {
@@ -93,10 +73,7 @@ fn sheet(
             for row in 0..SIDE * zoom {
                 let start = (top * zoom + row) * width * zoom + left * zoom;
                 let values = &plane[row / zoom * SIDE..][..SIDE];
-                for (pixels, value) in grey[start..start + SIDE * zoom]
-                    .chunks_exact_mut(zoom)
-                    .zip(values)
-                {
+                for (pixels, value) in grey[start..start + SIDE * zoom].chunks_exact_mut(zoom).zip(values) {
                     pixels.fill(shade(*value));
                 }
             }
@@ -115,11 +92,7 @@ fn shade(value: f32) -> u8 {
 mod tests {
     use super::*;
 
-    const LAYOUT: SheetLayout = SheetLayout {
-        channels: 2,
-        pairs_per_row: 2,
-        zoom: 2,
-    };
+    const LAYOUT: SheetLayout = SheetLayout { channels: 2, pairs_per_row: 2, zoom: 2 };
 
     fn pictures(values: [f32; 6]) -> Vec<f32> {
         values.iter().flat_map(|v| [*v; PIXELS]).collect()
@@ -137,18 +110,9 @@ mod tests {
         assert_eq!(read.dimensions(), (1092, 304));
         let at = |x: u32, y: u32| read.get_pixel(2 * (x + 32), 2 * (y + 32)).0[0];
         let grey = |v: f32| ((v + 1.0) * 127.5).round() as u8;
-        assert_eq!(
-            [at(8, 8), at(73, 8), at(140, 8), at(205, 8)],
-            [-1.0, -0.8, 0.2, 0.4].map(grey)
-        );
-        assert_eq!(
-            [at(277, 8), at(342, 8), at(409, 8), at(474, 8)],
-            [-0.6, -0.4, 0.6, 0.8].map(grey)
-        );
-        assert_eq!(
-            [at(8, 80), at(73, 80), at(140, 80), at(205, 80)],
-            [-0.2, 0.0, 1.0, 0.1].map(grey)
-        );
+        assert_eq!([at(8, 8), at(73, 8), at(140, 8), at(205, 8)], [-1.0, -0.8, 0.2, 0.4].map(grey));
+        assert_eq!([at(277, 8), at(342, 8), at(409, 8), at(474, 8)], [-0.6, -0.4, 0.6, 0.8].map(grey));
+        assert_eq!([at(8, 80), at(73, 80), at(140, 80), at(205, 80)], [-0.2, 0.0, 1.0, 0.1].map(grey));
         assert_eq!(at(277, 80), PAPER);
     }
 
@@ -158,27 +122,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sheet.png");
         let size = write_sheet(&path, &ok, &ok[PIXELS..], LAYOUT);
-        assert!(matches!(
-            size,
-            Err(ImageError::Size {
-                name: "generated pictures",
-                ..
-            })
-        ));
+        assert!(matches!(size, Err(ImageError::Size { name: "generated pictures", .. })));
         let zoom = write_sheet(&path, &ok, &ok, SheetLayout { zoom: 0, ..LAYOUT });
-        assert!(matches!(
-            zoom,
-            Err(ImageError::Setting { name: "zoom", .. })
-        ));
-        assert!(matches!(
-            write_sheet(&path, &[], &[], LAYOUT),
-            Err(ImageError::Size { .. })
-        ));
+        assert!(matches!(zoom, Err(ImageError::Setting { name: "zoom", .. })));
+        assert!(matches!(write_sheet(&path, &[], &[], LAYOUT), Err(ImageError::Size { .. })));
         assert!(!path.exists());
         let missing = folder.path().join("no-such-folder").join("sheet.png");
-        let message = write_sheet(&missing, &ok, &ok, LAYOUT)
-            .unwrap_err()
-            .to_string();
+        let message = write_sheet(&missing, &ok, &ok, LAYOUT).unwrap_err().to_string();
         assert!(message.contains("no-such-folder"), "{message}");
     }
 }

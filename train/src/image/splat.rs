@@ -76,23 +76,14 @@ fn bspline(f: f64) -> ([f64; 4], [f64; 4]) {
     let g = 1.0 - f;
     let (f2, g2) = (f * f, g * g);
     (
-        [
-            g2 * g / 6.0,
-            (3.0 * f2 * f - 6.0 * f2 + 4.0) / 6.0,
-            (3.0 * g2 * g - 6.0 * g2 + 4.0) / 6.0,
-            f2 * f / 6.0,
-        ],
+        [g2 * g / 6.0, (3.0 * f2 * f - 6.0 * f2 + 4.0) / 6.0, (3.0 * g2 * g - 6.0 * g2 + 4.0) / 6.0, f2 * f / 6.0],
         [-0.5 * g2, 1.5 * f2 - 2.0 * f, 2.0 * g - 1.5 * g2, 0.5 * f2],
     )
 }
 
 /// `a x b`
 pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -126,8 +117,7 @@ impl Renderer {
             return None;
         }
         let samples = self.config.samples as f64;
-        let area_scale =
-            self.scale[0] * self.scale[1] / (samples * samples * (1.0 + EDGE_ON * EDGE_ON).sqrt());
+        let area_scale = self.scale[0] * self.scale[1] / (samples * samples * (1.0 + EDGE_ON * EDGE_ON).sqrt());
         let half = 0.5 * (1.0 + normal[2] * lit / (facing * length));
         let depth = (z - nearest) / self.config.depth_softness_m;
         let weight = depth.clamp(-DEPTH_BOUND, DEPTH_BOUND).exp();
@@ -146,11 +136,7 @@ impl Renderer {
             area: area_scale * facing,
             area_scale,
             weight,
-            weight_slope: if bounded {
-                0.0
-            } else {
-                weight / self.config.depth_softness_m
-            },
+            weight_slope: if bounded { 0.0 } else { weight / self.config.depth_softness_m },
             shade: self.config.ambient + (1.0 - self.config.ambient) * half * half,
             shade_slope: (1.0 - self.config.ambient) * half,
             normal,
@@ -162,19 +148,11 @@ impl Renderer {
 
     /// Sums over the pixels of one cloth `[rows * columns * 3]`, into `scratch.sums`.
     pub(super) fn splat(&self, positions: &[f64], scratch: &mut Scratch) {
-        let Scratch {
-            surface,
-            sums,
-            nearest,
-        } = scratch;
+        let Scratch { surface, sums, nearest } = scratch;
         sums.clear();
         sums.resize(STRIDE * STRIDE, [0.0; 4]);
-        *nearest = positions
-            .iter()
-            .skip(2)
-            .step_by(3)
-            .filter(|z| z.is_finite())
-            .fold(f64::NEG_INFINITY, |a, z| a.max(*z));
+        *nearest =
+            positions.iter().skip(2).step_by(3).filter(|z| z.is_finite()).fold(f64::NEG_INFINITY, |a, z| a.max(*z));
         surface.load(&self.axis_u, &self.axis_v, positions);
         let samples = self.config.samples;
         for (j, checker) in self.checker.chunks_exact(samples).enumerate() {
@@ -201,12 +179,7 @@ impl Renderer {
 
     /// The picture `[channel][row][column]` in `[-1, 1]` from the sums.
     pub(super) fn compose(&self, scratch: &Scratch, image: &mut [f64]) {
-        for (channel, out) in self
-            .config
-            .channels
-            .iter()
-            .zip(image.chunks_exact_mut(SIDE * SIDE))
-        {
+        for (channel, out) in self.config.channels.iter().zip(image.chunks_exact_mut(SIDE * SIDE)) {
             for (row, out) in out.chunks_exact_mut(SIDE).enumerate() {
                 let sums = &scratch.sums[row_start(row)..row_start(row) + SIDE];
                 for (out, sums) in out.iter_mut().zip(sums) {

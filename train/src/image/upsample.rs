@@ -36,13 +36,8 @@ impl Axis {
                     -1.5 * t3 + 2.0 * t2 + 0.5 * t,
                     0.5 * t3 - 0.5 * t2,
                 ];
-                let slope = [
-                    -1.5 * t2 + 2.0 * t - 0.5,
-                    4.5 * t2 - 5.0 * t,
-                    -4.5 * t2 + 4.0 * t + 0.5,
-                    1.5 * t2 - t,
-                ]
-                .map(|w| w * cells as f64);
+                let slope = [-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t]
+                    .map(|w| w * cells as f64);
                 Taps {
                     first: cell.saturating_sub(1),
                     count: 4.min(particles - cell.saturating_sub(1)),
@@ -106,20 +101,10 @@ impl Surface {
         self.clear(u, v);
         let width = u.taps.len() * 3;
         let rows = particles.chunks_exact(u.particles * 3);
-        let outs = self
-            .along_u
-            .chunks_exact_mut(width)
-            .zip(self.along_u_slope.chunks_exact_mut(width));
+        let outs = self.along_u.chunks_exact_mut(width).zip(self.along_u_slope.chunks_exact_mut(width));
         for (row, (value, slope)) in rows.zip(outs) {
-            for (taps, (value, slope)) in u
-                .taps
-                .iter()
-                .zip(value.chunks_exact_mut(3).zip(slope.chunks_exact_mut(3)))
-            {
-                for (k, x) in row[taps.first * 3..(taps.first + taps.count) * 3]
-                    .chunks_exact(3)
-                    .enumerate()
-                {
+            for (taps, (value, slope)) in u.taps.iter().zip(value.chunks_exact_mut(3).zip(slope.chunks_exact_mut(3))) {
+                for (k, x) in row[taps.first * 3..(taps.first + taps.count) * 3].chunks_exact(3).enumerate() {
                     for c in 0..3 {
                         value[c] += taps.value[k] * x[c];
                         slope[c] += taps.slope[k] * x[c];
@@ -164,10 +149,7 @@ impl Surface {
             for (out, (p, t)) in value.zip(self.position.iter().zip(&self.tangent_v)) {
                 *out += w * p + d * t;
             }
-            for (out, t) in self.along_u_slope[from..from + width]
-                .iter_mut()
-                .zip(&self.tangent_u)
-            {
+            for (out, t) in self.along_u_slope[from..from + width].iter_mut().zip(&self.tangent_u) {
                 *out += w * t;
             }
         }
@@ -176,16 +158,9 @@ impl Surface {
     /// The adjoint of [`Surface::load`]: adds to `gradient` `[rows * columns * 3]`.
     pub fn load_adjoint(&self, u: &Axis, gradient: &mut [f64]) {
         let width = u.taps.len() * 3;
-        let ins = self
-            .along_u
-            .chunks_exact(width)
-            .zip(self.along_u_slope.chunks_exact(width));
+        let ins = self.along_u.chunks_exact(width).zip(self.along_u_slope.chunks_exact(width));
         for (row, (value, slope)) in gradient.chunks_exact_mut(u.particles * 3).zip(ins) {
-            for (taps, (value, slope)) in u
-                .taps
-                .iter()
-                .zip(value.chunks_exact(3).zip(slope.chunks_exact(3)))
-            {
+            for (taps, (value, slope)) in u.taps.iter().zip(value.chunks_exact(3).zip(slope.chunks_exact(3))) {
                 let range = taps.first * 3..(taps.first + taps.count) * 3;
                 for (k, x) in row[range].chunks_exact_mut(3).enumerate() {
                     for c in 0..3 {
@@ -215,10 +190,7 @@ mod tests {
             let mut particles = Vec::new();
             for r in 0..rows {
                 for c in 0..columns {
-                    let (s, t) = (
-                        c as f64 / (columns - 1) as f64,
-                        r as f64 / (rows - 1) as f64,
-                    );
+                    let (s, t) = (c as f64 / (columns - 1) as f64, r as f64 / (rows - 1) as f64);
                     particles.extend([2.0 * s + 0.5 * t + 1.0, -3.0 * t, s - t]);
                 }
             }
@@ -231,9 +203,7 @@ mod tests {
                     for c in 0..3 {
                         assert!((surface.position[i * 3 + c] - expected[c]).abs() < 1e-12);
                         assert!((surface.tangent_u[i * 3 + c] - [2.0, 0.0, 1.0][c]).abs() < 1e-12);
-                        assert!(
-                            (surface.tangent_v[i * 3 + c] - [0.5, -3.0, -1.0][c]).abs() < 1e-12
-                        );
+                        assert!((surface.tangent_v[i * 3 + c] - [0.5, -3.0, -1.0][c]).abs() < 1e-12);
                     }
                 }
             }
@@ -244,9 +214,7 @@ mod tests {
     fn the_surface_goes_through_the_particles() {
         // no sample lies on a particle: with very many, the two beside one come close to it
         let (columns, fine) = (5, 20_000);
-        let particles: Vec<f64> = (0..columns * 3 * 3)
-            .map(|i| ((i * i) as f64 * 0.37).sin())
-            .collect();
+        let particles: Vec<f64> = (0..columns * 3 * 3).map(|i| ((i * i) as f64 * 0.37).sin()).collect();
         let surface = row_of(columns, 3, fine, fine / 2, &particles);
         for c in 1..columns - 1 {
             let i = c * fine / (columns - 1);

@@ -40,11 +40,7 @@ impl Renderer {
         scratch: &mut GradientScratch,
         by_position: &mut [f64],
     ) {
-        let GradientScratch {
-            forward,
-            by_sums,
-            by_surface,
-        } = scratch;
+        let GradientScratch { forward, by_sums, by_surface } = scratch;
         self.splat(positions, forward);
         self.compose_adjoint(&forward.sums, by_image, by_sums);
         by_surface.clear(&self.axis_u, &self.axis_v);
@@ -73,19 +69,10 @@ impl Renderer {
     fn compose_adjoint(&self, sums: &[Sums], by_image: &[f64], by_sums: &mut Vec<Sums>) {
         by_sums.clear();
         by_sums.resize(splat::buffer_stride().1, [0.0; 4]);
-        for (channel, by_image) in self
-            .config
-            .channels
-            .iter()
-            .zip(by_image.chunks_exact(SIDE * SIDE))
-        {
+        for (channel, by_image) in self.config.channels.iter().zip(by_image.chunks_exact(SIDE * SIDE)) {
             for (row, by_image) in by_image.chunks_exact(SIDE).enumerate() {
                 let range = splat::row_start(row)..splat::row_start(row) + SIDE;
-                for ((by, sums), g) in by_sums[range.clone()]
-                    .iter_mut()
-                    .zip(&sums[range])
-                    .zip(by_image)
-                {
+                for ((by, sums), g) in by_sums[range.clone()].iter_mut().zip(&sums[range]).zip(by_image) {
                     let [coverage, near, ..] = *sums;
                     // without weights there is no cloth, and alpha has no slope either
                     if near <= 0.0 {
@@ -112,20 +99,8 @@ impl Renderer {
 
     /// Adjoint of `point`: gradients by position, tangent along u, tangent along v.
     #[inline(always)]
-    fn point_adjoint(
-        &self,
-        point: &Point,
-        by: &ByPoint,
-        surface: &Surface,
-        i: usize,
-    ) -> [[f64; 3]; 3] {
-        let Point {
-            normal,
-            length,
-            facing,
-            lit,
-            ..
-        } = *point;
+    fn point_adjoint(&self, point: &Point, by: &ByPoint, surface: &Surface, i: usize) -> [[f64; 3]; 3] {
+        let Point { normal, length, facing, lit, .. } = *point;
         // cosine = normal_z lit / (facing length)
         let by_cosine = by.shade * point.shade_slope;
         let per = by_cosine / (facing * length);
@@ -133,8 +108,7 @@ impl Renderer {
         let by_lit = per * normal[2];
         let by_facing = by.area * point.area_scale - by_cosine * cosine / facing;
         // facing^2 = normal_z^2 + EDGE_ON^2 length^2
-        let by_length =
-            -by_cosine * cosine / length + by_facing * EDGE_ON * EDGE_ON * length / facing;
+        let by_length = -by_cosine * cosine / length + by_facing * EDGE_ON * EDGE_ON * length / facing;
         let mut by_normal = [0.0; 3];
         for ((out, n), light) in by_normal.iter_mut().zip(normal).zip(self.light) {
             *out = by_length * n / length + by_lit * light;
@@ -143,11 +117,7 @@ impl Renderer {
         // normal = tangent_v x tangent_u
         let by_u = cross(by_normal, triple(&surface.tangent_v, i));
         let by_v = cross(triple(&surface.tangent_u, i), by_normal);
-        [
-            [by.px * self.scale[0], -by.py * self.scale[1], by.depth],
-            by_u,
-            by_v,
-        ]
+        [[by.px * self.scale[0], -by.py * self.scale[1], by.depth], by_u, by_v]
     }
 }
 
@@ -172,16 +142,10 @@ fn gather(point: &Point, checker: f64, by_sums: &[Sums]) -> ByPoint {
             slope_y[c] += point.dy[k] * along[c];
         }
     }
-    let Point {
-        area,
-        weight,
-        shade,
-        ..
-    } = *point;
+    let Point { area, weight, shade, .. } = *point;
     // what the sums get is area * carried[c]
     let carried = [1.0, weight, weight * shade, weight * shade * checker];
-    let total =
-        |s: [f64; 4]| s[0] * carried[0] + s[1] * carried[1] + s[2] * carried[2] + s[3] * carried[3];
+    let total = |s: [f64; 4]| s[0] * carried[0] + s[1] * carried[1] + s[2] * carried[2] + s[3] * carried[3];
     let by_shade = value[2] + value[3] * checker;
     ByPoint {
         area: total(value),

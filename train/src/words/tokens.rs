@@ -5,7 +5,7 @@
 
 /// The words of a text, in order, hyphenated ones whole.
 pub fn tokenize(text: &str) -> Vec<String> {
-    let lower = text.to_lowercase();
+    let lower = text.to_ascii_lowercase();
     lower
         .split(|c: char| !(c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'))
         // Two hyphens are a dash, not an inner hyphen.
