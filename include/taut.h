@@ -42,7 +42,8 @@
     (((uint32_t)TAUT_VERSION_MAJOR << 24) | ((uint32_t)TAUT_VERSION_MINOR << 16) | (uint32_t)TAUT_VERSION_PATCH)
 
 // Bytes of a cloth's block as a constant expression, for static storage: the same number that taut_cloth_memory gives for a
-// grid of rows x columns with these TAUT_FAMILY_* and a definition with these TAUT_FEATURE_* and max_pins.
+// grid of rows x columns with these TAUT_FAMILY_* and a definition with these TAUT_FEATURE_* and max_pins, which is at most
+// rows * columns.
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
@@ -254,7 +255,7 @@ typedef struct {
     float density_kg_m2;
     // Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
     float damping_per_s;
-    // Speed limit as a fraction of the smallest rest length per substep, 0 to 1e6; 0 = none. Default 0.25.
+    // Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
     float speed_limit;
     // 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
     // exploding; 0: off. Default 1.
@@ -267,8 +268,8 @@ typedef struct {
     float inertia_radius_m;
     // Largest factor of the inertia field, 1 to 1e4. Default 32.
     float inertia_max;
-    // Most pins at a time, 0 to the number of particles. 28 bytes each. Default 256, or the number of particles if that is
-    // less.
+    // Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256, or the number of
+    // particles if that is less.
     uint32_t max_pins;
     // Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
     uint32_t features;

@@ -87,7 +87,7 @@ pub struct ClothDef {
     pub density_kg_m2: f32,
     /// Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
     pub damping_per_s: f32,
-    /// Speed limit as a fraction of the smallest rest length per substep, 0 to 1e6; 0 = none. Default 0.25.
+    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
     pub speed_limit: f32,
     /// 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
     /// exploding; 0: off. Default 1.
@@ -100,8 +100,8 @@ pub struct ClothDef {
     pub inertia_radius_m: f32,
     /// Largest factor of the inertia field, 1 to 1e4. Default 32.
     pub inertia_max: f32,
-    /// Most pins at a time, 0 to the number of particles. 28 bytes each. Default 256, or the number of particles if that is
-    /// less.
+    /// Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256, or the number of
+    /// particles if that is less.
     pub max_pins: u32,
     /// Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
     pub features: u32,

@@ -92,7 +92,7 @@ fn tract_reads_the_metadata() -> TractResult<()> {
     let model = tract_onnx::onnx().model_for_read(&mut Cursor::new(&bytes))?;
     let text = |key: &str| -> TractResult<String> {
         let value = &model.properties[&format!("onnx.metadata_props.{key}")];
-        Ok(value.try_as_plain()?.to_scalar::<String>()?.clone())
+        Ok(value.try_as_plain_ram()?.to_scalar::<String>()?.clone())
     };
     assert_eq!(text("taut.format")?, "1");
     let vocabulary = text("taut.vocabulary")?;

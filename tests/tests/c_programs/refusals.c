@@ -189,7 +189,7 @@ static int definitions(void)
     WRONG(TAUT_ERROR_OUT_OF_RANGE, budget = 0xffffffffu);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, compression_limit = 2);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2);
-    WRONG(TAUT_ERROR_OUT_OF_RANGE, max_pins = SIDE * SIDE + 1);
+    WRONG(TAUT_ERROR_OUT_OF_RANGE, speed_limit = 1e-7f);
     return 0;
 }
 
@@ -202,6 +202,10 @@ static int blocks(void)
     taut_memory memory = {7, 7};
     DONE(taut_cloth_memory(grid, &def, &memory));
     REQUIRE(memory.size == BYTES && memory.align == TAUT_CLOTH_ALIGN);
+    def.max_pins = 0xffffffffu; // all there are
+    DONE(taut_cloth_memory(grid, &def, &memory));
+    REQUIRE(memory.size == TAUT_CLOTH_BYTES(SIDE, SIDE, TAUT_FAMILY_ALL, TAUT_FEATURE_PULL, SIDE * SIDE));
+    def.max_pins = 4;
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_memory(NULL, &def, &memory));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_memory(grid, NULL, &memory));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_memory(grid, &def, NULL));
