@@ -31,15 +31,8 @@ pub trait ClothBackend: Backend {
 impl ClothBackend for Flex {
     fn shapes_at_rest(field: FloatTensor<Self>, batch: Batch) -> FloatTensor<Self> {
         let particles = field.shape()[2] * field.shape()[3];
-        let positions = batch
-            .iter()
-            .flat_map(|s| s.positions().as_flattened())
-            .map(|&x| x as f32)
-            .collect::<Vec<_>>();
-        Flex::float_from_data(
-            TensorData::new(positions, [batch.len(), particles, 3]),
-            &field.device(),
-        )
+        let positions = batch.iter().flat_map(|s| s.positions().as_flattened()).map(|&x| x as f32).collect::<Vec<_>>();
+        Flex::float_from_data(TensorData::new(positions, [batch.len(), particles, 3]), &field.device())
     }
 }
 
@@ -60,12 +53,11 @@ impl<B: Backend> Backward<B, 1> for ShapesAtRest {
         // A gradient that cannot be read is answered with NaN, which the training loop looks for: this trait knows no
         // errors, and a panic would say less.
         let lost = || vec![f32::NAN; batch.len() * length];
-        let gradient = match read_sync(B::float_into_data(by_position))
-            .map(|d| d.convert::<f32>().try_into_vec::<f32>())
-        {
-            Ok(Ok(by_position)) => vjp(&batch, &by_position, length),
-            _ => lost(),
-        };
+        let gradient =
+            match read_sync(B::float_into_data(by_position)).map(|d| d.convert::<f32>().try_into_vec::<f32>()) {
+                Ok(Ok(by_position)) => vjp(&batch, &by_position, length),
+                _ => lost(),
+            };
         let data = TensorData::new(gradient, [batch.len(), CHANNELS, rows, columns]);
         grads.register::<B>(field.id, B::float_from_data(data, &device));
     }
@@ -76,9 +68,7 @@ impl<B: ClothBackend, C: CheckpointStrategy> ClothBackend for Autodiff<B, C> {
         let (field, node) = field.into_parts();
         let sides = [field.shape()[2], field.shape()[3]];
         match ShapesAtRest.prepare::<C>([node]).compute_bound().stateful() {
-            OpsKind::Tracked(prepared) => {
-                prepared.finish((batch.clone(), sides), B::shapes_at_rest(field, batch))
-            }
+            OpsKind::Tracked(prepared) => prepared.finish((batch.clone(), sides), B::shapes_at_rest(field, batch)),
             OpsKind::UnTracked(prepared) => prepared.finish(B::shapes_at_rest(field, batch)),
         }
     }
@@ -97,72 +87,33 @@ impl<B: ClothBackend, C: CheckpointStrategy> ClothBackend for Autodiff<B, C> {
 pub fn equilibrium(field: Tensor<4>, scenes: &mut [Scene]) -> Result<Tensor<3>, ClothError> {
     let dims = field.dims();
     for scene in scenes.iter() {
-        let expected = vec![
-            scenes.len(),
-            CHANNELS,
-            scene.springs().rows(),
-            scene.springs().columns(),
-        ];
+        let expected = vec![scenes.len(), CHANNELS, scene.springs().rows(), scene.springs().columns()];
         if dims[..] != expected[..] {
-            return Err(ClothError::Shape {
-                what: "the batch of stiffness fields",
-                expected,
-                found: dims.to_vec(),
-            });
+            return Err(ClothError::Shape { what: "the batch of stiffness fields", expected, found: dims.to_vec() });
         }
     }
-    let unreadable = ClothError::Shape {
-        what: "an unreadable tensor",
-        expected: dims.to_vec(),
-        found: Vec::new(),
-    };
-    let numbers = field
-        .to_data()
-        .convert::<f64>()
-        .try_into_vec::<f64>()
-        .map_err(|_| unreadable)?;
+    let unreadable = ClothError::Shape { what: "an unreadable tensor", expected: dims.to_vec(), found: Vec::new() };
+    let numbers = field.to_data().convert::<f64>().try_into_vec::<f64>().map_err(|_| unreadable)?;
     if scenes.is_empty() {
         let (expected, found) = (vec![1], vec![0]);
-        return Err(ClothError::Shape {
-            what: "the list of scenes",
-            expected,
-            found,
-        });
+        return Err(ClothError::Shape { what: "the list of scenes", expected, found });
     }
     let fields: Vec<&[f64]> = numbers.chunks_exact(numbers.len() / scenes.len()).collect();
     for (item, (scene, field)) in scenes.iter().zip(&fields).enumerate() {
         scene.check_field(field, item)?;
     }
-    let solutions = in_parallel(
-        scenes.iter_mut().zip(fields),
-        threads(),
-        |(scene, field)| scene.solve_checked(field),
-    );
-    Ok(Tensor::from_dispatch(Dispatch::shapes_at_rest(
-        field.into_dispatch(),
-        Arc::new(solutions),
-    )))
+    let solutions = in_parallel(scenes.iter_mut().zip(fields), threads(), |(scene, field)| scene.solve_checked(field));
+    Ok(Tensor::from_dispatch(Dispatch::shapes_at_rest(field.into_dispatch(), Arc::new(solutions))))
 }
 
 /// Gradients of all items, `length` numbers each.
 fn vjp(batch: &[Solution], by_position: &[f32], length: usize) -> Vec<f32> {
-    let items = batch
-        .iter()
-        .zip(by_position.chunks_exact(by_position.len() / batch.len()));
+    let items = batch.iter().zip(by_position.chunks_exact(by_position.len() / batch.len()));
     let gradient = |(solution, by_position): (&Solution, &[f32])| {
-        let rows: Vec<[f64; 3]> = by_position
-            .chunks_exact(3)
-            .map(|p| [p[0], p[1], p[2]].map(f64::from))
-            .collect();
-        solution
-            .gradient(&rows)
-            .unwrap_or_else(|_| vec![f64::NAN; length])
+        let rows: Vec<[f64; 3]> = by_position.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
+        solution.gradient(&rows).unwrap_or_else(|_| vec![f64::NAN; length])
     };
-    in_parallel(items, threads(), gradient)
-        .concat()
-        .into_iter()
-        .map(|g| g as f32)
-        .collect()
+    in_parallel(items, threads(), gradient).concat().into_iter().map(|g| g as f32).collect()
 }
 
 /// Threads that the machine offers.
@@ -181,12 +132,7 @@ fn in_parallel<T: Send, R: Send>(
         return items.map(work).collect();
     }
     let queue = Mutex::new(items.enumerate());
-    let next = || {
-        queue
-            .lock()
-            .unwrap_or_else(|poisoned| poisoned.into_inner())
-            .next()
-    };
+    let next = || queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
     let run = || {
         let mut done = Vec::new();
         while let Some((i, item)) = next() {
@@ -220,27 +166,14 @@ mod tests {
     fn scenes() -> Vec<Scene> {
         let springs = Arc::new(Springs::new(SIDE, SIDE, 1.0, 1.0).unwrap());
         let scene = |pins: &[usize], dt_s: f64| {
-            Scene::new(
-                &springs,
-                SceneDef {
-                    dt_s,
-                    ..SceneDef::hung(&springs, pins)
-                },
-            )
-            .unwrap()
+            Scene::new(&springs, SceneDef { dt_s, ..SceneDef::hung(&springs, pins) }).unwrap()
         };
-        vec![
-            scene(&[0, 5], 1.0 / 120.0),
-            scene(&[0, 1, 2, 3, 4, 5], 1e-4),
-            scene(&[0, 5], 1e-4),
-        ]
+        vec![scene(&[0, 5], 1.0 / 120.0), scene(&[0, 1, 2, 3, 4, 5], 1e-4), scene(&[0, 5], 1e-4)]
     }
 
     fn numbers() -> Vec<f32> {
         let n = SIDE * SIDE;
-        let value = |j: usize| {
-            [900.0, 600.0, 90.0, 30.0][j % (4 * n) / n] * (1.0 + 0.3 * (j as f32 * 1.7).sin())
-        };
+        let value = |j: usize| [900.0, 600.0, 90.0, 30.0][j % (4 * n) / n] * (1.0 + 0.3 * (j as f32 * 1.7).sin());
         (0..12 * n).map(value).collect()
     }
 
@@ -269,10 +202,7 @@ mod tests {
         let weights = weights(&device).into_data().try_into_vec::<f32>().unwrap();
         let length = 4 * SIDE * SIDE;
         for (item, mut scene) in scenes().into_iter().enumerate() {
-            let field: Vec<f64> = numbers()[item * length..][..length]
-                .iter()
-                .map(|&k| f64::from(k))
-                .collect();
+            let field: Vec<f64> = numbers()[item * length..][..length].iter().map(|&k| f64::from(k)).collect();
             let solution = scene.solve(&field).unwrap();
             assert_eq!(Some(solution.positions()), through_burn[item].start());
             let by_position: Vec<[f64; 3]> = weights[item * SIDE * SIDE * 3..][..SIDE * SIDE * 3]
@@ -295,25 +225,15 @@ mod tests {
         let mut height = |log: Vec<f32>| {
             let log = tensor(log, &device).require_grad();
             let shape = equilibrium(log.clone().exp(), &mut scenes).unwrap();
-            let lower = shape
-                .slice([0..3, (SIDE - 1) * SIDE..SIDE * SIDE, 1..2])
-                .mean();
+            let lower = shape.slice([0..3, (SIDE - 1) * SIDE..SIDE * SIDE, 1..2]).mean();
             let gradient = log.grad(&lower.backward()).unwrap();
-            (
-                lower.into_scalar::<f32>(),
-                gradient.into_data().try_into_vec::<f32>().unwrap(),
-            )
+            (lower.into_scalar::<f32>(), gradient.into_data().try_into_vec::<f32>().unwrap())
         };
         let log: Vec<f32> = numbers().iter().map(|k| k.ln()).collect();
         let (before, gradient) = height(log.clone());
         let norm = gradient.iter().map(|g| g * g).sum::<f32>();
         let rate = 0.05 / gradient.iter().fold(0.0, |m: f32, g| m.max(g.abs()));
-        let moved = |sign: f32| {
-            log.iter()
-                .zip(&gradient)
-                .map(|(x, g)| x + sign * rate * g)
-                .collect()
-        };
+        let moved = |sign: f32| log.iter().zip(&gradient).map(|(x, g)| x + sign * rate * g).collect();
         let (above, below) = (height(moved(1.0)).0, height(moved(-1.0)).0);
         let (found, expected) = ((above - below) / 2.0, rate * norm);
         assert!(above > before && before > below);
@@ -325,33 +245,16 @@ mod tests {
         let device = Device::flex();
         let mut scenes = scenes();
         let short = Tensor::<4>::ones([2, 4, SIDE, SIDE], &device);
-        assert!(matches!(
-            equilibrium(short, &mut scenes),
-            Err(ClothError::Shape { .. })
-        ));
+        assert!(matches!(equilibrium(short, &mut scenes), Err(ClothError::Shape { .. })));
         let wide = Tensor::<4>::ones([3, 4, SIDE, SIDE + 1], &device);
-        assert!(matches!(
-            equilibrium(wide, &mut scenes),
-            Err(ClothError::Shape { .. })
-        ));
+        assert!(matches!(equilibrium(wide, &mut scenes), Err(ClothError::Shape { .. })));
         let mut bad = numbers();
         bad[(4 + 2) * SIDE * SIDE + 3 * SIDE + 1] = f32::NAN;
         let error = equilibrium(tensor(bad, &device), &mut scenes).unwrap_err();
-        assert_eq!(
-            error,
-            ClothError::Stiffness {
-                item: 1,
-                channel: 2,
-                row: 3,
-                column: 1
-            }
-        );
+        assert_eq!(error, ClothError::Stiffness { item: 1, channel: 2, row: 3, column: 1 });
         assert!(scenes.iter().all(|s| s.start().is_none()));
         let one = Tensor::<4>::ones([1, 4, SIDE, SIDE], &device);
-        assert!(matches!(
-            equilibrium(one, &mut []),
-            Err(ClothError::Shape { .. })
-        ));
+        assert!(matches!(equilibrium(one, &mut []), Err(ClothError::Shape { .. })));
     }
 
     #[test]
@@ -362,32 +265,19 @@ mod tests {
         field[4 * SIDE * SIDE..8 * SIDE * SIDE].fill(0.0);
         let field = tensor(field, &device).require_grad();
         let shape = equilibrium(field.clone(), &mut scenes).unwrap();
-        let gradient = field
-            .grad(&shape.sum().backward())
-            .unwrap()
-            .into_data()
-            .try_into_vec::<f32>()
-            .unwrap();
-        let any = |item: usize| {
-            gradient[item * 4 * SIDE * SIDE..][..4 * SIDE * SIDE]
-                .iter()
-                .any(|g| *g != 0.0)
-        };
+        let gradient = field.grad(&shape.sum().backward()).unwrap().into_data().try_into_vec::<f32>().unwrap();
+        let any = |item: usize| gradient[item * 4 * SIDE * SIDE..][..4 * SIDE * SIDE].iter().any(|g| *g != 0.0);
         assert_eq!([any(0), any(1), any(2)], [true, false, true]);
         assert!(scenes[1].start().is_none() && scenes[2].start().is_some());
     }
 
     #[test]
     fn the_number_of_threads_does_not_matter() {
-        let fields: Vec<Vec<f64>> = numbers()
-            .chunks_exact(4 * SIDE * SIDE)
-            .map(|f| f.iter().map(|&k| f64::from(k)).collect())
-            .collect();
+        let fields: Vec<Vec<f64>> =
+            numbers().chunks_exact(4 * SIDE * SIDE).map(|f| f.iter().map(|&k| f64::from(k)).collect()).collect();
         let run = |threads: usize| -> Vec<Vec<[f64; 3]>> {
             let mut scenes = scenes();
-            let work = |(scene, field): (&mut Scene, &Vec<f64>)| {
-                scene.solve_checked(field).positions().to_vec()
-            };
+            let work = |(scene, field): (&mut Scene, &Vec<f64>)| scene.solve_checked(field).positions().to_vec();
             in_parallel(scenes.iter_mut().zip(&fields), threads, work)
         };
         let one = run(1);

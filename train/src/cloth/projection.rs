@@ -13,22 +13,12 @@ pub const BEND_SHARE: f64 = 0.02;
 /// Inertia field q, one number per particle: clip(radius / distance to the nearest pin, 1, most), the distance taken in
 /// the flat sheet. 1 everywhere where nothing is pinned or the radius is 0. `pinned` has one entry per particle.
 pub fn inertia(springs: &Springs, pinned: &[bool], radius_m: f64, most: f64) -> Vec<f64> {
-    let pins: Vec<[f64; 2]> = (0..pinned.len())
-        .filter(|&i| pinned[i])
-        .map(|i| springs.flat(i))
-        .collect();
+    let pins: Vec<[f64; 2]> = (0..pinned.len()).filter(|&i| pinned[i]).map(|i| springs.flat(i)).collect();
     let q = |i: usize| {
         let [u, v] = springs.flat(i);
-        let nearest = pins
-            .iter()
-            .map(|p| (p[0] - u).hypot(p[1] - v))
-            .fold(f64::INFINITY, f64::min);
+        let nearest = pins.iter().map(|p| (p[0] - u).hypot(p[1] - v)).fold(f64::INFINITY, f64::min);
         // At a pin 0/0 or x/0 must not be asked for; q has no effect there.
-        if nearest > 0.0 {
-            (radius_m / nearest).clamp(1.0, most)
-        } else {
-            most
-        }
+        if nearest > 0.0 { (radius_m / nearest).clamp(1.0, most) } else { most }
     };
     (0..pinned.len()).map(q).collect()
 }
@@ -113,19 +103,8 @@ impl Projection {
                 slope[i] = gradient.map(|g| -s / largest * g);
             }
         }
-        let stiffness = springs
-            .list()
-            .iter()
-            .zip(&raw)
-            .map(|(s, k)| k * scale[s.a].min(scale[s.b]))
-            .collect();
-        Projection {
-            stiffness,
-            raw,
-            scale,
-            slope,
-            bend_cut,
-        }
+        let stiffness = springs.list().iter().zip(&raw).map(|(s, k)| k * scale[s.a].min(scale[s.b])).collect();
+        Projection { stiffness, raw, scale, slope, bend_cut }
     }
 
     /// Stiffness of every spring in N/m, in the order of [`Springs::list`].
@@ -140,10 +119,7 @@ impl Projection {
 
     /// How much of the springs' total stiffness (after the bend cut) the budget took away, 0 to 1.
     pub fn cut_fraction(&self) -> f64 {
-        let (kept, raw) = (
-            self.stiffness.iter().sum::<f64>(),
-            self.raw.iter().sum::<f64>(),
-        );
+        let (kept, raw) = (self.stiffness.iter().sum::<f64>(), self.raw.iter().sum::<f64>());
         if raw > 0.0 { 1.0 - kept / raw } else { 0.0 }
     }
 
@@ -164,9 +140,7 @@ impl Projection {
             let mut by_raw = g * self.scale[s.a].min(self.scale[s.b]);
             for (end, other) in [(s.a, s.b), (s.b, s.a)] {
                 let [uu, uv, vv] = self.slope[end];
-                by_raw += by_scale[end]
-                    * weight(budget, other)
-                    * (uu * u * u + 2.0 * uv * u * v + vv * v * v);
+                by_raw += by_scale[end] * weight(budget, other) * (uu * u * u + 2.0 * uv * u * v + vv * v * v);
             }
             field[s.channel * n + s.a] += 0.5 * by_raw;
             field[s.channel * n + s.b] += 0.5 * by_raw;
@@ -219,35 +193,16 @@ mod tests {
         pinned[0] = true;
         pinned[6] = true;
         let mass = 0.2 * 0.8 / 42.0;
-        let inertial_mass_kg = inertia(&springs, &pinned, 0.3, 32.0)
-            .iter()
-            .map(|q| q * mass)
-            .collect();
+        let inertial_mass_kg = inertia(&springs, &pinned, 0.3, 32.0).iter().map(|q| q * mass).collect();
         let mut next = noise(3);
-        let field = (0..4 * 42)
-            .map(|j| [900.0, 1500.0, 300.0, 25.0][j / 42] * (0.5 + next()))
-            .collect();
-        (
-            springs,
-            Budget {
-                dt_s,
-                damping_per_s: 2.0,
-                fraction: TUNED_FRACTION,
-                inertial_mass_kg,
-                pinned,
-            },
-            field,
-        )
+        let field = (0..4 * 42).map(|j| [900.0, 1500.0, 300.0, 25.0][j / 42] * (0.5 + next())).collect();
+        (springs, Budget { dt_s, damping_per_s: 2.0, fraction: TUNED_FRACTION, inertial_mass_kg, pinned }, field)
     }
 
     #[test]
     fn vjp_agrees_with_finite_differences() {
         // Clamped everywhere but at the pins, partly, and nowhere.
-        for (dt, least, most) in [
-            (1.0 / 120.0, 0.3, 0.99),
-            (1.0 / 600.0, 0.01, 0.7),
-            (1.0 / 20_000.0, 0.0, 0.0),
-        ] {
+        for (dt, least, most) in [(1.0 / 120.0, 0.3, 0.99), (1.0 / 600.0, 0.01, 0.7), (1.0 / 20_000.0, 0.0, 0.0)] {
             let (springs, budget, field) = setting(dt);
             let mut next = noise(5);
             let weights: Vec<f64> = springs.list().iter().map(|_| next() - 0.5).collect();
@@ -256,11 +211,7 @@ mod tests {
                 p.stiffness().iter().zip(&weights).map(|(k, w)| k * w).sum()
             };
             let p = Projection::new(&springs, &budget, &field);
-            assert!(
-                (least..=most).contains(&p.cut_fraction()),
-                "{}",
-                p.cut_fraction()
-            );
+            assert!((least..=most).contains(&p.cut_fraction()), "{}", p.cut_fraction());
             assert!(p.bend_cut.iter().any(|&c| c) && !p.bend_cut.iter().all(|&c| c));
             let gradient = p.vjp(&springs, &budget, &weights);
             for j in 0..field.len() {
@@ -283,9 +234,7 @@ mod tests {
     fn fills_the_cap_and_keeps_ratios() {
         let (springs, budget, _) = setting(1.0 / 240.0);
         let n = springs.particles();
-        let field: Vec<f64> = (0..4 * n)
-            .map(|j| [4000.0, 2000.0, 500.0, 1.0][j / n])
-            .collect();
+        let field: Vec<f64> = (0..4 * n).map(|j| [4000.0, 2000.0, 500.0, 1.0][j / n]).collect();
         let p = Projection::new(&springs, &budget, &field);
         let mut sums = vec![[0.0; 3]; n];
         for (s, k) in springs.list().iter().zip(p.stiffness()) {
@@ -297,20 +246,9 @@ mod tests {
             }
         }
         let load = |i: usize| largest_eigenvalue(sums[i]).0 / budget.cap(i);
-        assert!(
-            (0..n)
-                .filter(|&i| !budget.pinned[i])
-                .all(|i| load(i) <= 1.0 + 1e-12)
-        );
+        assert!((0..n).filter(|&i| !budget.pinned[i]).all(|i| load(i) <= 1.0 + 1e-12));
         assert!((0..n).any(|i| load(i) > 1.0 - 1e-9));
-        assert!(
-            p.cut_fraction() > 0.5
-                && budget
-                    .pinned
-                    .iter()
-                    .zip(p.scale())
-                    .all(|(&pin, &s)| !pin || s == 1.0)
-        );
+        assert!(p.cut_fraction() > 0.5 && budget.pinned.iter().zip(p.scale()).all(|(&pin, &s)| !pin || s == 1.0));
     }
 
     #[test]
@@ -319,15 +257,7 @@ mod tests {
         let q = inertia(&springs, &budget.pinned, 0.3, 32.0);
         assert_eq!(q[1], 0.3 / (1.0 / 6.0));
         assert_eq!(q[41], 1.0);
-        assert!(
-            inertia(&springs, &[false; 42], 0.3, 32.0)
-                .iter()
-                .all(|&q| q == 1.0)
-        );
-        assert!(
-            inertia(&springs, &budget.pinned, 0.0, 1.0)
-                .iter()
-                .all(|&q| q == 1.0)
-        );
+        assert!(inertia(&springs, &[false; 42], 0.3, 32.0).iter().all(|&q| q == 1.0));
+        assert!(inertia(&springs, &budget.pinned, 0.0, 1.0).iter().all(|&q| q == 1.0));
     }
 }

@@ -50,13 +50,7 @@ impl SceneDef {
     /// corners, edge the top row, hang1 particle 0. Particles that do not exist are refused by [`Scene::new`].
     pub fn hung(springs: &Springs, particles: &[usize]) -> SceneDef {
         SceneDef {
-            pins: particles
-                .iter()
-                .map(|&p| Pin {
-                    particle: p,
-                    position_m: springs.hung_flat(p),
-                })
-                .collect(),
+            pins: particles.iter().map(|&p| Pin { particle: p, position_m: springs.hung_flat(p) }).collect(),
             density_kg_m2: 0.2,
             gravity_m_s2: [0.0, -9.81, 0.0],
             dt_s: 1.0 / 960.0,
@@ -74,47 +68,19 @@ impl SceneDef {
             false => Err(ClothError::OutOfRange { what, value }),
         };
         let gravity = self.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
-        range(
-            "density in kg/m^2",
-            self.density_kg_m2,
-            (1e-6..=1e6).contains(&self.density_kg_m2),
-        )?;
+        range("density in kg/m^2", self.density_kg_m2, (1e-6..=1e6).contains(&self.density_kg_m2))?;
         range("gravity in m/s^2", gravity, (1e-6..=1e4).contains(&gravity))?;
-        range(
-            "time step in s",
-            self.dt_s,
-            (1e-9..=1.0).contains(&self.dt_s),
-        )?;
+        range("time step in s", self.dt_s, (1e-9..=1.0).contains(&self.dt_s))?;
         let damping = self.damping_per_s;
-        range(
-            "damping in 1/s",
-            damping,
-            damping >= 0.0 && damping * self.dt_s < 1.0,
-        )?;
-        range(
-            "share of the budget",
-            self.fraction,
-            self.fraction > 0.0 && self.fraction <= 1.0,
-        )?;
-        range(
-            "inertia radius in m",
-            self.inertia_radius_m,
-            (0.0..=1e4).contains(&self.inertia_radius_m),
-        )?;
-        range(
-            "largest inertia",
-            self.inertia_max,
-            (1.0..=1e4).contains(&self.inertia_max),
-        )?;
+        range("damping in 1/s", damping, damping >= 0.0 && damping * self.dt_s < 1.0)?;
+        range("share of the budget", self.fraction, self.fraction > 0.0 && self.fraction <= 1.0)?;
+        range("inertia radius in m", self.inertia_radius_m, (0.0..=1e4).contains(&self.inertia_radius_m))?;
+        range("largest inertia", self.inertia_max, (1.0..=1e4).contains(&self.inertia_max))?;
         let mut pinned = vec![false; particles];
         for pin in &self.pins {
-            let seen = pinned.get_mut(pin.particle).ok_or(ClothError::Pin {
-                particle: pin.particle,
-            })?;
+            let seen = pinned.get_mut(pin.particle).ok_or(ClothError::Pin { particle: pin.particle })?;
             if std::mem::replace(seen, true) {
-                return Err(ClothError::Pin {
-                    particle: pin.particle,
-                });
+                return Err(ClothError::Pin { particle: pin.particle });
             }
             for value in pin.position_m {
                 range("position of a pin in m", value, value.abs() <= 1e5)?;
@@ -186,16 +152,7 @@ impl Scene {
             inertial_mass_kg: q.iter().map(|q| q * mass_kg).collect(),
             pinned,
         };
-        Ok(Scene {
-            fixed: Arc::new(Fixed {
-                springs: springs.clone(),
-                def,
-                mass_kg,
-                budget,
-                pattern,
-            }),
-            last: None,
-        })
+        Ok(Scene { fixed: Arc::new(Fixed { springs: springs.clone(), def, mass_kg, budget, pattern }), last: None })
     }
 
     /// The spring network.
@@ -225,17 +182,10 @@ impl Scene {
             let expected = self.springs().particles();
             if start.len() != expected {
                 let (expected, found) = (vec![expected], vec![start.len()]);
-                return Err(ClothError::Shape {
-                    what: "a start",
-                    expected,
-                    found,
-                });
+                return Err(ClothError::Shape { what: "a start", expected, found });
             }
             if let Some(&value) = start.as_flattened().iter().find(|x| x.is_nan() || x.abs() > 1e5) {
-                return Err(ClothError::OutOfRange {
-                    what: "position of a start in m",
-                    value,
-                });
+                return Err(ClothError::OutOfRange { what: "position of a start in m", value });
             }
         }
         self.last = start;
@@ -257,19 +207,10 @@ impl Scene {
         let (rows, columns, n) = (springs.rows(), springs.columns(), springs.particles());
         if field.len() != CHANNELS * n {
             let (expected, found) = (vec![CHANNELS, rows, columns], vec![field.len()]);
-            return Err(ClothError::Shape {
-                what: "a stiffness field",
-                expected,
-                found,
-            });
+            return Err(ClothError::Shape { what: "a stiffness field", expected, found });
         }
         match field.iter().position(|k| !(*k >= 0.0 && k.is_finite())) {
-            Some(j) => Err(ClothError::Stiffness {
-                item,
-                channel: j / n,
-                row: j % n / columns,
-                column: j % columns,
-            }),
+            Some(j) => Err(ClothError::Stiffness { item, channel: j / n, row: j % n / columns, column: j % columns }),
             None => Ok(()),
         }
     }
@@ -278,21 +219,8 @@ impl Scene {
         let fixed = &self.fixed;
         let projection = Projection::new(&fixed.springs, &fixed.budget, field);
         let cloth = fixed.cloth(&projection);
-        let weight = fixed.mass_kg
-            * fixed
-                .def
-                .gravity_m_s2
-                .iter()
-                .map(|g| g * g)
-                .sum::<f64>()
-                .sqrt();
-        let hold = |x: &mut Vec<[f64; 3]>| {
-            fixed
-                .def
-                .pins
-                .iter()
-                .for_each(|p| x[p.particle] = p.position_m)
-        };
+        let weight = fixed.mass_kg * fixed.def.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let hold = |x: &mut Vec<[f64; 3]>| fixed.def.pins.iter().for_each(|p| x[p.particle] = p.position_m);
         let attempt = |mut x: Vec<[f64; 3]>, most| {
             let outcome = cloth.settle(&mut x, TOLERANCE * weight, most);
             (x, outcome)
@@ -310,24 +238,10 @@ impl Scene {
                 attempt(x, MOST_ITERATIONS[1])
             }
         };
-        let Outcome {
-            residual_n,
-            iterations,
-            settled,
-        } = outcome;
+        let Outcome { residual_n, iterations, settled } = outcome;
         self.last = settled.then(|| positions.clone());
-        let outcome = Settled {
-            settled,
-            residual_n,
-            iterations,
-            cut_fraction: projection.cut_fraction(),
-        };
-        Solution {
-            fixed: fixed.clone(),
-            projection,
-            positions,
-            outcome,
-        }
+        let outcome = Settled { settled, residual_n, iterations, cut_fraction: projection.cut_fraction() };
+        Solution { fixed: fixed.clone(), projection, positions, outcome }
     }
 }
 
@@ -371,21 +285,12 @@ impl Solution {
     pub fn gradient(&self, by_position: &[[f64; 3]]) -> Result<Vec<f64>, ClothError> {
         if by_position.len() != self.positions.len() {
             let (expected, found) = (vec![self.positions.len()], vec![by_position.len()]);
-            return Err(ClothError::Shape {
-                what: "a gradient by position",
-                expected,
-                found,
-            });
+            return Err(ClothError::Shape { what: "a gradient by position", expected, found });
         }
         if !self.outcome.settled {
             return Ok(vec![0.0; CHANNELS * self.positions.len()]);
         }
-        let by_spring = self
-            .fixed
-            .cloth(&self.projection)
-            .adjoint(&self.positions, by_position);
-        Ok(self
-            .projection
-            .vjp(&self.fixed.springs, &self.fixed.budget, &by_spring))
+        let by_spring = self.fixed.cloth(&self.projection).adjoint(&self.positions, by_position);
+        Ok(self.projection.vjp(&self.fixed.springs, &self.fixed.budget, &by_spring))
     }
 }
