@@ -231,7 +231,11 @@ impl Scene {
                     found,
                 });
             }
-            if let Some(&value) = start.as_flattened().iter().find(|x| x.is_nan() || x.abs() > 1e5) {
+            if let Some(&value) = start
+                .as_flattened()
+                .iter()
+                .find(|x| x.is_nan() || x.abs() > 1e5)
+            {
                 return Err(ClothError::OutOfRange {
                     what: "position of a start in m",
                     value,
