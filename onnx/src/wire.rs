@@ -124,6 +124,9 @@ struct Reader<'a> {
     whole: bool,
 }
 
+/// A field: its number, and its bytes where it has a length.
+type Field<'a> = (u64, Option<&'a [u8]>);
+
 impl<'a> Reader<'a> {
     fn file(bytes: &'a [u8]) -> Self {
         Reader { bytes, at: 0, whole: true }
@@ -134,7 +137,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The next field: its number and, where it has a length, its bytes. None at the end.
-    fn field(&mut self) -> Result<Option<(u64, Option<&'a [u8]>)>, Error> {
+    fn field(&mut self) -> Result<Option<Field<'a>>, Error> {
         if self.at == self.bytes.len() {
             return Ok(None);
         }
