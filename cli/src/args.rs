@@ -13,7 +13,8 @@ use crate::numbers::{self, GridSize, Sides};
 const EXAMPLES: &str = "Examples:
   taut drape \"heavy blue denim\"                     picture, table and report in out/drape
   taut drape \"light silk\" --scene edge --json       the report alone on stdout
-  taut correct \"heavy blue denim\" --out denim.taut  a stiffness field for taut_cloth_load_stiffness
+  taut correct \"heavy blue denim\" --out denim.tautfield
+                                                    a stiffness field for taut_cloth_load_stiffness
   taut info                                         the generator that is built in";
 
 /// Cloth for games that does not stretch like rubber: the fabric in words, the stiffness from a generator.
@@ -45,13 +46,13 @@ pub struct Cloth {
     #[arg(long, default_value = "hang2")]
     pub scene: Scene,
     /// Particles, each side 2 to 4096.
-    #[arg(long, value_name = "ROWSxCOLUMNS", default_value = "32x32", value_parser = numbers::grid, allow_negative_numbers = true)]
+    #[arg(long, value_name = "ROWSxCOLUMNS", default_value = "32x32", value_parser = numbers::grid, allow_hyphen_values = true)]
     pub grid: GridSize,
     /// Side lengths of the sheet in m.
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1x1", value_parser = numbers::sides, allow_negative_numbers = true)]
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1x1", value_parser = numbers::sides, allow_hyphen_values = true)]
     pub size: Sides,
     /// Another seed gives another field of the same fabric.
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
     pub seed: u64,
     /// A generator file instead of the one that is built in.
     #[arg(long, value_name = "FILE.onnx")]
@@ -64,19 +65,19 @@ pub struct Drape {
     #[command(flatten)]
     pub cloth: Cloth,
     /// Frames per second, 1 to 10000.
-    #[arg(long, value_name = "HZ", default_value = "60", value_parser = numbers::rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value = "60", value_parser = numbers::rate, allow_hyphen_values = true)]
     pub rate: f32,
     /// Substeps of a frame, 1 to 1024. The reference takes as many as it needs.
-    #[arg(long, value_name = "N", default_value = "16", value_parser = numbers::substeps, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "16", value_parser = numbers::substeps, allow_hyphen_values = true)]
     pub substeps: u32,
     /// tuned (80 % of the flat sheet's limit) or certified (stable from any start, half as stiff).
     #[arg(long, default_value = "tuned", value_parser = numbers::budget)]
     pub budget: Budget,
     /// Mass per area, for all settings [default: what the generator tells].
-    #[arg(long, value_name = "KG_M2", value_parser = numbers::density, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG_M2", value_parser = numbers::density, allow_hyphen_values = true)]
     pub density: Option<f32>,
     /// Simulated time in s, at most 3600.
-    #[arg(long, value_name = "S", default_value = "10", value_parser = numbers::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value = "10", value_parser = numbers::seconds, allow_hyphen_values = true)]
     pub seconds: f32,
     /// Folder for drape.png and report.json; made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "out/drape")]

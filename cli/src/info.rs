@@ -26,6 +26,11 @@ fn ranges(names: &[&str], ranges: &[Range]) -> Value {
     Value::Object(map)
 }
 
+/// A number as short as it can be read back.
+fn number(x: f32) -> String {
+    if (1e-4..1e6).contains(&x) { x.to_string() } else { format!("{x:e}") }
+}
+
 fn as_json(source: &str, info: &Info) -> Value {
     json!({
         "file": source,
@@ -63,7 +68,8 @@ fn as_text(source: &str, info: &Info) -> String {
     let ranges = |text: &mut String, title: &str, names: &[&str], ranges: &[Range]| {
         for (i, (name, r)) in names.iter().zip(ranges).enumerate() {
             let title = if i == 0 { title } else { "" };
-            text.push_str(&format!("{title:<16}  {name:<18}  {} to {}\n", r.low, r.high));
+            let (low, high) = (number(r.low), number(r.high));
+            text.push_str(&format!("{title:<16}  {name:<18}  {low} to {high}\n"));
         }
     };
     ranges(&mut text, "Stiffness, N/m", &CHANNELS, &info.channel_ranges);

@@ -27,10 +27,9 @@ pub fn load(path: Option<&Path>) -> Result<Generator, Failure> {
 
 /// The field of a fabric for a scene. Words that did not count are named on stderr.
 pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
-    let generator = load(args.model.as_deref())?;
     let columns = args.grid.columns as usize;
     let pins: Vec<(usize, usize)> = args.scene.pins(columns).into_iter().map(|p| (p / columns, p % columns)).collect();
-    let correction = generator.correct(&Request {
+    let request = Request {
         description: &args.description,
         seed: args.seed,
         rows: args.grid.rows as usize,
@@ -38,9 +37,23 @@ pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
         width_m: args.size.width_m,
         height_m: args.size.height_m,
         pins: &pins,
+    };
+    let (generator, correction) = apart(|| {
+        let generator = load(args.model.as_deref())?;
+        let correction = generator.correct(&request)?;
+        Ok::<_, Failure>((generator, correction))
     })?;
     warn(&correction, generator.info().tokens);
     Ok((generator, correction))
+}
+
+/// Runs the inference engine in a thread of its own. Its kernels leave the upper halves of the vector registers in use,
+/// which makes every scalar instruction of the thread slower from then on: the step of the cloth took three times as long.
+fn apart<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| match scope.spawn(work).join() {
+        Ok(value) => value,
+        Err(panic) => std::panic::resume_unwind(panic),
+    })
 }
 
 fn warn(c: &Correction, limit: usize) {

@@ -27,7 +27,7 @@ pub fn fills_the_budget(name: &str) -> bool {
 
 /// How much of K was cut, in percent.
 pub fn cut(s: &Setting) -> String {
-    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction) }
+    if fills_the_budget(s.name) { "-".into() } else { format!("{:.0}", 100.0 * s.cut_fraction.max(0.0)) }
 }
 
 /// CPU time of a frame in microseconds.
@@ -82,13 +82,13 @@ pub fn stiffness(k: Stiffness) -> String {
     format!("warp {:.0}, weft {:.0}, shear {:.1}, bend {:.2} N/m", k.warp, k.weft, k.shear, k.bend)
 }
 
-fn points(what: &str, d: Difference) -> String {
-    let signed = |x: f64| if x.is_finite() { format!("{x:+.2}") } else { "-".into() };
-    format!(
-        "{} points at the largest and {} away from pins against {what}",
-        signed(d.max_points),
-        signed(d.ex_pin_max_points)
-    )
+/// The generated cloth against another, largest / away from pins.
+fn points(d: Difference, other: &str) -> String {
+    let signed = |x: f64| {
+        if x.is_finite() { format!("{x:+.2}") } else { "-".into() }
+    };
+    let (max, ex_pin) = (signed(d.max_points), signed(d.ex_pin_max_points));
+    format!("{max} / {ex_pin} against {other}")
 }
 
 /// What the reader must know beside the numbers, a sentence each.
@@ -108,9 +108,10 @@ pub fn notes(report: &Report) -> Vec<String> {
     ));
     if let Some(share) = report.net_share {
         notes.push(format!(
-            "The net's own share: {}, {} (below 0 the net did better).",
-            points("uniform + inertia", share.uniform_inertia),
-            points("analytic + inertia", share.analytic_inertia)
+            "The net's own share, points of stretch at the largest / away from pins (below 0: it stretches less): {}, {}; {}.",
+            points(share.uniform_inertia, "uniform + inertia"),
+            points(share.analytic_inertia, "analytic + inertia"),
+            points(share.reference, "the reference")
         ));
     }
     let named = |pick: &dyn Fn(&&Setting) -> bool| -> String {

@@ -1,11 +1,11 @@
 //! Files that are there whole or not at all, also when the program is interrupted.
 
 use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::failure::{Failure, complain};
+use crate::failure::{self, Failure, complain};
 
 /// Folders that this run has made and not yet filled, the deepest first. Whoever writes holds the lock, so that an
 /// interrupt waits until all files of a result are in place.
@@ -33,6 +33,10 @@ pub fn clean_up_on_interrupt() {
     let _ = ctrlc::set_handler(|| {
         let mut folders = unfilled();
         remove_unfilled(&mut folders);
+        if io::stderr().is_terminal() {
+            // the progress bar stands in this line
+            failure::print_aside("\n");
+        }
         complain("interrupted");
         std::process::exit(INTERRUPTED);
     });

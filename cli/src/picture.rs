@@ -38,16 +38,13 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
 }
 
 /// What stands above a cloth.
-fn lines(s: &Setting, grid: [u32; 2]) -> [String; 3] {
+fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
     let stretch = s.stretch_pct;
-    let cut = match (notes::fills_the_budget(s.name), s.cut_fraction) {
-        (true, _) => "all the step can carry".into(),
-        (false, cut) if cut <= 0.0 => "nothing cut".into(),
-        (false, cut) => format!("{:.0} % of K cut", 100.0 * cut),
-    };
+    let cut = if notes::fills_the_budget(s.name) { "K at limit".into() } else { format!("K cut {} %", notes::cut(s)) };
     [
         format!("max {} %  p99 {} %", number(stretch.max), number(stretch.p99)),
         format!("away from pins {} %", number(stretch.ex_pin_max)),
-        format!("{cut}, {:.0} us/frame", notes::us_per_frame(s, grid)),
+        format!("{cut}  {:.1} ns/particle-step", s.ns_per_particle_step),
+        format!("{} substeps  {:.0} us/frame", s.substeps, notes::us_per_frame(s, grid)),
     ]
 }

@@ -124,18 +124,19 @@ impl From<&Outcome> for Setting {
     }
 }
 
-/// The generated cloth minus another, in points of stretch: below 0 the net did better.
+/// The generated cloth minus another, in points of stretch: below 0 it stretches less.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     pub max_points: f64,
     pub ex_pin_max_points: f64,
 }
 
-/// What the net adds to what the inertia field does for any stiffness.
+/// What the net adds to what the inertia field does for any stiffness, and what is left to the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NetShare {
     pub uniform_inertia: Difference,
     pub analytic_inertia: Difference,
+    pub reference: Difference,
 }
 
 /// `report.json`.
@@ -214,6 +215,7 @@ fn net_share(settings: &[Setting]) -> Option<NetShare> {
     Some(NetShare {
         uniform_inertia: minus(stretch("uniform_inertia")?),
         analytic_inertia: minus(stretch("analytic_inertia")?),
+        reference: minus(stretch("reference")?),
     })
 }
 
@@ -241,10 +243,12 @@ mod tests {
         let mut settings = vec![setting("uniform_inertia", 3.0, 2.0), setting("generated", 2.5, 2.25)];
         assert_eq!(net_share(&settings), None);
         settings.push(setting("analytic_inertia", 2.0, 2.0));
+        settings.push(setting("reference", 1.5, 0.25));
         let share = net_share(&settings).expect("all three");
         assert_eq!(share.uniform_inertia.max_points, -0.5);
         assert_eq!(share.uniform_inertia.ex_pin_max_points, 0.25);
         assert_eq!(share.analytic_inertia.max_points, 0.5);
+        assert_eq!(share.reference.ex_pin_max_points, 2.0);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tract_onnx::pb::ModelProto;
 use tract_onnx::prelude::*;
 
-use crate::graph::{INPUTS, OUTPUTS, input_shapes, output_shapes};
+use crate::graph::{input_shapes, output_shapes};
 use crate::guard::guarded;
 use crate::{Error, Info};
 
@@ -38,7 +38,6 @@ impl Plan {
     /// Runs the network. The result is `field` and `fabric` as they stand in the file's contract,
     /// row by row, every number within -1 and 1. Errors: [`Error::Inference`], [`Error::Output`].
     pub fn run(&self, feed: &Feed<'_>) -> Result<[Vec<f32>; 2], Error> {
-        debug_assert_eq!((INPUTS.len(), OUTPUTS.len()), (4, 2));
         let outputs = guarded("run", || -> TractResult<_> {
             let inputs = tvec!(
                 Tensor::from_shape(&self.inputs[0], feed.tokens)?.into_tvalue(),
@@ -76,8 +75,9 @@ fn checked(
         });
     }
     for x in &mut numbers {
-        // written so that NaN fails
-        if !(x.abs() <= 1.0 + 1e-4) {
+        // false for NaN
+        let written_by_tanh = x.abs() <= 1.0 + 1e-4;
+        if !written_by_tanh {
             return Err(Error::Output { output, value: *x });
         }
         *x = x.clamp(-1.0, 1.0);

@@ -169,7 +169,7 @@ impl Weights {
     pub fn new() -> Weights {
         let mut words = numbers(1, (WORDS.len() + 1) * WIDTH, 1.0);
         words[..WIDTH].fill(0.0);
-        let above_zero = |v: Vec<f32>| v.into_iter().map(|x| x.abs() + 0.5).collect();
+        let above_zero = |v: Vec<f32>| v.into_iter().map(|x| unhalf(half(x.abs() + 0.5))).collect();
         Weights {
             words,
             head: numbers(2, WIDTH * 5, 1.0),

@@ -22,6 +22,8 @@ mod projection;
 mod relax;
 mod scene;
 mod springs;
+#[cfg(test)]
+mod tests;
 
 pub use error::ClothError;
 pub use op::equilibrium;

@@ -184,7 +184,7 @@ impl Scene {
                 let (expected, found) = (vec![expected], vec![start.len()]);
                 return Err(ClothError::Shape { what: "a start", expected, found });
             }
-            if let Some(&value) = start.as_flattened().iter().find(|x| !(x.abs() <= 1e5)) {
+            if let Some(&value) = start.as_flattened().iter().find(|x| x.is_nan() || x.abs() > 1e5) {
                 return Err(ClothError::OutOfRange { what: "position of a start in m", value });
             }
         }

@@ -14,6 +14,11 @@ pub enum ExportError {
         /// Name of the tensor in the file.
         tensor: String,
     },
+    /// A number of the named tensor, which stays f32, is not finite.
+    NotFinite {
+        /// Name of the tensor in the file.
+        tensor: String,
+    },
     /// The named tensor of the network has a shape that the file cannot have, or could not be read.
     Tensor {
         /// Name of the tensor in the file.
@@ -33,6 +38,7 @@ impl fmt::Display for ExportError {
             Self::NotHalf { tensor } => {
                 write!(f, "tensor {tensor} holds a number that f16 cannot: not finite or beyond 65504")
             }
+            Self::NotFinite { tensor } => write!(f, "tensor {tensor} holds a number that is not finite"),
             Self::Tensor { tensor } => write!(f, "tensor {tensor} has an unexpected shape or could not be read"),
             Self::Input(what) => write!(f, "inputs of the generator: {what}"),
             Self::TooLarge(bytes) => {

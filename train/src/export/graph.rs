@@ -60,7 +60,17 @@ impl GraphBuilder {
         self.constant(name, &[values.len()], data_type::INT64, raw)
     }
 
-    /// A vector of exact f32 numbers that steer an operator (scales of a Resize), not weights.
+    /// A vector of a normalisation, as f32 and without a Cast: see the writer for why.
+    fn exact(&mut self, name: &str, tensor: Tensor<1>) -> Result<String, ExportError> {
+        let values =
+            tensor.into_data().try_into_vec::<f32>().map_err(|_| ExportError::Tensor { tensor: name.into() })?;
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(ExportError::NotFinite { tensor: name.into() });
+        }
+        Ok(self.floats(name, &values))
+    }
+
+    /// A vector of exact f32 numbers.
     pub(super) fn floats(&mut self, name: &str, values: &[f32]) -> String {
         let raw = values.iter().flat_map(|v| v.to_le_bytes()).collect();
         self.constant(name, &[values.len()], data_type::FLOAT, raw)
@@ -141,7 +151,7 @@ impl GraphBuilder {
         ];
         let mut inputs = vec![x.to_string()];
         for (part, tensor) in parts {
-            inputs.push(self.weight(&format!("{name}.{part}"), tensor)?);
+            inputs.push(self.exact(&format!("{name}.{part}"), tensor)?);
         }
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
         Ok(self.node(name, "BatchNormalization", &inputs, vec![float("epsilon", l.epsilon as f32)]))

@@ -1,6 +1,6 @@
 //! From a trained generator to the one `.onnx` file that the runtime reads.
 //!
-//! The file holds the network of [`crate::nets::generator`] with the word table in front of it, every number as f16
+//! The file holds the network of [`crate::nets::generator`] with the word table in front of it, weights and words as f16
 //! behind a Cast to f32, and describes itself by metadata: vocabulary, channels, ranges, sizes, training digest.
 //! [`export`] writes it, [`round_to_f16`] gives the network with exactly the numbers of the file, and [`run_rounded`]
 //! runs that network on the file's own inputs, so that other runtimes can be compared with it.

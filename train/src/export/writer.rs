@@ -9,6 +9,10 @@
 //!
 //! Outputs: `field` f32 [batch, 4, 32, 32] and `fabric` f32 [batch, 5], both in [-1, 1]. The words are gathered as f16
 //! and cast then, which gives the numbers of a cast table without ever holding one.
+//!
+//! Kernels, matrices, biases and words are f16 behind a Cast. The four vectors of each normalisation stay f32, without
+//! one: tract asks for constants there and does not fold a Cast of more than 16 numbers before it asks; and a running
+//! variance may be too small for f16. They are 1 part in 1000 of the file.
 
 use burn::module::Module;
 use prost::Message;

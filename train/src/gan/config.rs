@@ -95,8 +95,8 @@ impl Default for TrainConfig {
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
-            steps: StageSteps { matching: 500, positions: 100, adversarial: 100 },
-            matching_rate: 1e-3,
+            steps: StageSteps { matching: 800, positions: 60, adversarial: 60 },
+            matching_rate: 2e-3,
             learning_rate: 1e-4,
             beta1: 0.9,
             epoch_pictures: 4615,
@@ -112,7 +112,7 @@ impl Default for TrainConfig {
             picture_noise: [0.01, 0.05],
             substeps: vec![8, 16, 48],
             gradient_clip: 1.0,
-            report_every: 25,
+            report_every: 20,
         }
     }
 }

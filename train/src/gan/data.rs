@@ -31,12 +31,13 @@ const EVALUATION: u64 = 0x6576_616c;
 const STREAM: u64 = 0x7374_7265;
 
 /// The stiffness that the net shall say for a fabric, in N/m: the physical one, with shear raised to 0.3 of the mean
-/// structural stiffness. A game's step cuts every family alike, and then a weak shear takes the strain: this ratio is
-/// the best analytic choice there (docs/training.md).
+/// structural stiffness, 0.15 for a knit. A game's step cuts every family alike, and then a weak shear takes the strain:
+/// this ratio is the best analytic choice there (docs/training.md). A knit is cut less, and keeps more of its own.
 pub fn corrected_stiffness(fabric: &Fabric) -> [f32; 4] {
     let [warp, weft, shear, bend] = fabric.stiffness;
     let mean = 0.5 * (warp + weft);
-    [warp, weft, shear.max(0.3 * mean), bend.min(taut::BEND_SHARE * mean)]
+    let share = if fabric.is_soft() { 0.15 } else { 0.3 };
+    [warp, weft, shear.max(share * mean), bend.min(taut::BEND_SHARE * mean)]
 }
 
 /// How numbers are written in tanh's range: -1 and 1 are the ends of a range, logarithmic in between.

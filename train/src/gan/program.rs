@@ -74,6 +74,11 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     let bytes = export::export(trainer.generator(), trainer.data().words(), &meta).map_err(TrainError::part)?;
     let path = out.join("generator.onnx");
     write_whole(&path, &bytes)?;
+    // what burn answers on the file's own numbers, for other runtimes to be compared with
+    let words = trainer.data().words();
+    let input = export::fixture::input(2, words.tokens.len(), config.seed);
+    let sample = export::run_rounded(trainer.generator(), words, &input).map_err(TrainError::part)?;
+    write_whole(&out.join("parity.json"), &serde_json::to_vec(&sample).map_err(TrainError::part)?)?;
     println!("{}: {} bytes, weights of step {}", path.display(), bytes.len(), best.map_or(trainer.step, |b| b.1));
     Ok(())
 }

@@ -1,0 +1,64 @@
+//! Linux on x86_64, by system calls.
+
+use core::arch::{asm, naked_asm};
+
+const WRITE: usize = 1;
+const EXIT: usize = 60;
+
+/// Where the kernel enters: the stack is aligned, as a call expects it, and never left.
+#[unsafe(naked)]
+#[unsafe(no_mangle)]
+extern "C" fn _start() -> ! {
+    naked_asm!("xor ebp, ebp", "and rsp, -16", "call {start}", "ud2", start = sym start)
+}
+
+extern "C" fn start() -> ! {
+    crate::main()
+}
+
+/// Writes a text that ends with a zero byte to standard output; a failed or short write ends the program with 1.
+pub fn write(text: &[u8]) {
+    let bytes = text.len().saturating_sub(1);
+    let mut done = WRITE;
+    // SAFETY: write(2) reads `bytes` bytes of `text`; the kernel destroys rcx and r11 only.
+    unsafe {
+        asm!("syscall", inout("rax") done, in("rdi") 1, in("rsi") text.as_ptr(), in("rdx") bytes,
+            out("rcx") _, out("r11") _, options(nostack));
+    }
+    if done != bytes {
+        exit(1);
+    }
+}
+
+/// Ends the process.
+pub fn exit(code: i32) -> ! {
+    // SAFETY: exit(2) does not come back.
+    unsafe { asm!("syscall", in("rax") EXIT, in("rdi") code, options(noreturn, nostack)) }
+}
+
+/// The compiler writes calls to these two itself and a libc would have them. String instructions, since the compiler
+/// would turn a loop into a call to the function that holds it.
+///
+/// # Safety
+/// `to` and `from` are valid for `bytes` bytes and do not overlap.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, bytes: usize) -> *mut u8 {
+    // SAFETY: as above; the direction flag is clear in every Rust and C function.
+    unsafe {
+        asm!("rep movsb", inout("rcx") bytes => _, inout("rdi") to => _, inout("rsi") from => _,
+            options(nostack, preserves_flags));
+    }
+    to
+}
+
+/// # Safety
+/// `to` is valid for `bytes` bytes.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn memset(to: *mut u8, value: i32, bytes: usize) -> *mut u8 {
+    // SAFETY: as above.
+    unsafe {
+        asm!("rep stosb", inout("rcx") bytes => _, inout("rdi") to => _, in("al") value as u8,
+            options(nostack, preserves_flags));
+    }
+    to
+}
