@@ -184,20 +184,8 @@ impl Scene {
                 let (expected, found) = (vec![expected], vec![start.len()]);
                 return Err(ClothError::Shape { what: "a start", expected, found });
             }
-<<<<<<< HEAD
             if let Some(&value) = start.as_flattened().iter().find(|x| x.is_nan() || x.abs() > 1e5) {
                 return Err(ClothError::OutOfRange { what: "position of a start in m", value });
-=======
-            if let Some(&value) = start
-                .as_flattened()
-                .iter()
-                .find(|x| x.is_nan() || x.abs() > 1e5)
-            {
-                return Err(ClothError::OutOfRange {
-                    what: "position of a start in m",
-                    value,
-                });
->>>>>>> h-equilibrium
             }
         }
         self.last = start;
