@@ -10,9 +10,9 @@
 //! Outputs: `field` f32 [batch, 4, 32, 32] and `fabric` f32 [batch, 5], both in [-1, 1]. The words are gathered as f16
 //! and cast then, which gives the numbers of a cast table without ever holding one.
 //!
-//! Kernels, matrices, biases and words are f16 behind a Cast. The four vectors of each normalisation stay f32, without
-//! one: tract asks for constants there and does not fold a Cast of more than 16 numbers before it asks; and a running
-//! variance may be too small for f16. They are 1 part in 1000 of the file.
+//! Kernels, matrices, biases and words are f16 behind a Cast. The four vectors of each normalisation stay f32: a running
+//! variance may be too small for f16, and an error of the mean is multiplied by its ratio to the deviation. They are
+//! fewer than 1 in 1000 of the numbers.
 
 use burn::module::Module;
 use prost::Message;
