@@ -90,8 +90,8 @@ fn the_same_words_and_seed_give_the_same_states() {
     let home = home();
     let one = |words, more: &[&str]| report(&drape(home.path(), words, &[&["--json"], more].concat()));
     let (a, b, other) = (one("silk", &[]), one("silk", &[]), one("silk", &["--seed", "1"]));
-    for i in 0..NAMES.len() {
-        assert_eq!(hash(&a, i), hash(&b, i), "{}", NAMES[i]);
+    for (i, name) in NAMES.iter().enumerate() {
+        assert_eq!(hash(&a, i), hash(&b, i), "{name}");
     }
     assert_ne!(hash(&a, 6), hash(&other, 6), "another seed is another field");
     assert_ne!(hash(&a, 1), hash(&other, 1), "and another random K");
