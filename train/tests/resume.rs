@@ -44,6 +44,9 @@ fn goes_on_as_if_it_had_not_been_interrupted() {
     assert_eq!(whole.stage(), Stage::Matching);
     advance(&mut whole, 6);
     let expected = bytes(&whole);
+    let mut again = trainer(&config);
+    advance(&mut again, 6);
+    assert!(bytes(&again) == expected, "two runs of one configuration differ");
 
     // cut in the middle of each stage
     let folder = tempfile::tempdir().expect("a folder");

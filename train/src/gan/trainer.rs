@@ -354,8 +354,9 @@ impl Trainer {
         state.write(run, |folder| {
             let file = |name: &str| folder.join(name);
             let part = |e: burn::store::RecordError| TrainError::file(folder, format!("{e:?}"));
-            self.generator.clone().save_file(file("generator.bpk")).map_err(part)?;
-            self.discriminator.clone().save_file(file("discriminator.bpk")).map_err(part)?;
+            // `valid` first: it brings the running statistics up to the last step, which a clone does not
+            self.generator.valid().save_file(file("generator.bpk")).map_err(part)?;
+            self.discriminator.valid().save_file(file("discriminator.bpk")).map_err(part)?;
             self.generator_optimizer.save(file("generator_adam.bpk")).map_err(part)?;
             self.discriminator_optimizer.save(file("discriminator_adam.bpk")).map_err(part)
         })
@@ -383,7 +384,7 @@ impl Trainer {
 
     /// Writes the weights of the generator alone.
     pub fn save_generator(&self, path: &Path) -> Result<(), TrainError> {
-        self.generator.clone().save_file(path).map_err(|e| TrainError::file(path, format!("{e:?}")))
+        self.generator.valid().save_file(path).map_err(|e| TrainError::file(path, format!("{e:?}")))
     }
 
     /// Reads weights of the generator.
