@@ -144,7 +144,12 @@ fn line(grid: &Grid) -> Vec<Vector3<f32>> {
 fn started(seed: u64, def: ClothDef) -> Cloth<'static> {
     let mut r = Random::new(seed);
     let grid = squares(12, 12, 1.0 / 11.0, FAMILIES[seed as usize / 2 % 4]);
-    let def = ClothDef { substeps: 1000, rate_hz: 1.0, inertia_radius_m: if seed % 3 == 0 { 0.3 } else { 0.0 }, ..def };
+    let def = ClothDef {
+        substeps: 1000,
+        rate_hz: 1.0,
+        inertia_radius_m: if seed.is_multiple_of(3) { 0.3 } else { 0.0 },
+        ..def
+    };
     let (low, high) = (1.0, r.log(10.0, 1e7));
     let field: Vec<f32> = (0..4 * 144).map(|_| r.log(low, high)).collect();
     let mut c = cloth(&grid, &def);

@@ -21,7 +21,7 @@ fn made() -> Cloth<'static> {
 /// What a player does in a frame: drives, adds and takes pins, pulls.
 fn input(c: &mut Cloth<'_>, frame: u64) {
     let mut random = Random::new(frame + 1000);
-    if frame % 3 == 0 {
+    if frame.is_multiple_of(3) {
         let p = random.below(c.grid().particles());
         if c.pin_count() < 12 {
             c.pin(p).unwrap();
