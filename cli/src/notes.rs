@@ -100,8 +100,9 @@ pub fn notes(report: &Report) -> Vec<String> {
         (kind, true) => format!("{kind}, measured"),
         (kind, false) => format!("{kind}, an estimate"),
     };
+    let words = if r.changed_by_words { ", changed by the words that go with it" } else { "" };
     let substeps = report.reference_substeps.map_or(String::new(), |n| format!(", {n} substeps"));
-    notes.push(format!("Reference: {fabric}: {}{substeps}.", stiffness(r.stiffness_n_per_m)));
+    notes.push(format!("Reference: {fabric}{words}: {}{substeps}.", stiffness(r.stiffness_n_per_m)));
     notes.push(format!(
         "Generated: medians before the budget: {}.",
         stiffness(report.generator.median_stiffness_n_per_m)

@@ -4,7 +4,7 @@ use serde::Serialize;
 use taut::Budget;
 use taut::field::CHANNELS;
 use taut_lab::compare::{Case, Outcome};
-use taut_lab::fabric::Fabric;
+use taut_lab::fabric::{Fabric, KINDS};
 use taut_lab::metrics::{StretchPct, median};
 use taut_onnx::{Correction, Info};
 
@@ -56,6 +56,8 @@ pub struct Reference {
     pub kind: String,
     /// Whether its constants were measured; else they are an estimate, or the generator's.
     pub measured: bool,
+    /// Whether words such as "heavy" have changed the constants of the kind, by factors that are estimates.
+    pub changed_by_words: bool,
     /// Physical stiffness, the modifying words counted in.
     pub stiffness_n_per_m: Stiffness,
 }
@@ -194,6 +196,7 @@ impl Report {
             reference_fabric: Reference {
                 kind: reference.kind.into(),
                 measured: reference.measured,
+                changed_by_words: changed_by_words(reference),
                 stiffness_n_per_m: reference.stiffness.into(),
             },
             reference_substeps,
@@ -203,6 +206,11 @@ impl Report {
             dropped_words: c.dropped_words.clone(),
         }
     }
+}
+
+fn changed_by_words(f: &Fabric) -> bool {
+    let plain = KINDS.iter().find(|k| k.name == f.kind);
+    plain.is_some_and(|k| k.fabric().stiffness != f.stiffness)
 }
 
 fn net_share(settings: &[Setting]) -> Option<NetShare> {
@@ -249,6 +257,12 @@ mod tests {
         assert_eq!(share.uniform_inertia.ex_pin_max_points, 0.25);
         assert_eq!(share.analytic_inertia.max_points, 0.5);
         assert_eq!(share.reference.ex_pin_max_points, 2.0);
+    }
+
+    #[test]
+    fn words_that_change_a_fabric_are_told() {
+        let changed = |d: &str| changed_by_words(&Fabric::named(d).expect(d));
+        assert!(!changed("blue denim") && changed("heavy blue denim"));
     }
 
     #[test]

@@ -53,6 +53,7 @@ fn the_report_has_the_promised_keys() {
     assert!(size[0] == 1.0 && (size[1] - 0.8).abs() < 1e-6, "{size:?}");
     assert_eq!(r["reference_fabric"]["kind"], "denim");
     assert_eq!(r["reference_fabric"]["measured"], true);
+    assert_eq!(r["reference_fabric"]["changed_by_words"], true);
     assert!(r["reference_substeps"].as_u64() >= Some(4));
     assert!(settings[0]["cut_fraction"].as_f64() < Some(1e-6), "the reference is not cut");
     for other in ["uniform_inertia", "analytic_inertia"] {
@@ -123,7 +124,7 @@ fn unknown_words_are_named_and_skipped() {
     assert!(warning.starts_with("taut: warning:"), "{warning}");
     assert!(warning.contains("qzxvw") && warning.contains("bqqzt"), "{warning}");
     let long = vec!["denim"; 17].join(" ");
-    let run = drape(home.path(), &long, &[]);
+    let run = succeeds(home.path(), &["correct", &long, "--out", "f"]);
     assert!(run.stderr.contains("only the first 16"), "{}", run.stderr);
 }
 
