@@ -38,22 +38,10 @@ pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
         height_m: args.size.height_m,
         pins: &pins,
     };
-    let (generator, correction) = apart(|| {
-        let generator = load(args.model.as_deref())?;
-        let correction = generator.correct(&request)?;
-        Ok::<_, Failure>((generator, correction))
-    })?;
+    let generator = load(args.model.as_deref())?;
+    let correction = generator.correct(&request)?;
     warn(&correction, generator.info().tokens);
     Ok((generator, correction))
-}
-
-/// Runs the inference engine in a thread of its own. Its kernels leave the upper halves of the vector registers in use,
-/// which makes every scalar instruction of the thread slower from then on: the step of the cloth took three times as long.
-fn apart<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    std::thread::scope(|scope| match scope.spawn(work).join() {
-        Ok(value) => value,
-        Err(panic) => std::panic::resume_unwind(panic),
-    })
 }
 
 fn warn(c: &Correction, limit: usize) {
