@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use taut::field::FieldView;
-use taut::noise;
-use taut::{Cloth, ClothDef, Grid, GridDef};
+use taut::{Budget, noise};
+use taut_lab::compare::{self, Case, Setting};
 use taut_lab::fabric::{self, Fabric};
 use taut_lab::scene::Scene;
 
@@ -241,30 +240,20 @@ fn example(
 }
 
 /// The reference cloth: core itself at the physical stiffness, with as many substeps as the budget needs to cut nothing,
-/// stepped to rest.
+/// stepped to rest: the same that the program shows as the reference.
 fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainError> {
-    let side = n as u32;
-    let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).map_err(TrainError::part)?;
-    let k = fabric.stiffness;
-    let field: Vec<f32> = (0..16).map(|i| k[i / 4]).collect();
-    let field = FieldView::new(4, 2, 2, &field).map_err(TrainError::part)?;
-    let mut def = ClothDef { density_kg_m2: fabric.density_kg_m2, max_pins: scene.max_pins(n), ..ClothDef::default() };
-    let mut block = vec![0.0; Cloth::memory(&grid, &def).map_err(TrainError::part)?];
-    let mut cloth = Cloth::create(&grid, &def, &mut block).map_err(TrainError::part)?;
-    cloth.set_stiffness_field(&field);
-    scene.set_up(&mut cloth).map_err(TrainError::part)?;
-    let needed = 1.2 / (cloth.budget().map_err(TrainError::part)?.max_dt_s * def.rate_hz);
-    def.substeps = (needed.ceil() as u32).clamp(16, 1024);
-    let mut cloth = Cloth::create(&grid, &def, &mut block).map_err(TrainError::part)?;
-    cloth.set_stiffness_field(&field);
-    scene.set_up(&mut cloth).map_err(TrainError::part)?;
-    for _ in 0..(REFERENCE_SECONDS * def.rate_hz) as usize {
-        cloth.step().map_err(TrainError::part)?;
-    }
-    let mut out = Vec::with_capacity(3 * grid.particles());
-    for i in 0..grid.particles() {
-        let p = cloth.position(i).map_err(TrainError::part)?;
-        out.extend([p.x, p.y, p.z]);
-    }
-    Ok(out)
+    let case = Case {
+        scene,
+        rows: n as u32,
+        columns: n as u32,
+        size_m: [1.0, 1.0],
+        rate_hz: 60.0,
+        substeps: 16,
+        budget: Budget::Tuned,
+        density_kg_m2: fabric.density_kg_m2,
+        seconds: REFERENCE_SECONDS,
+        seed: 0,
+    };
+    let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ()).map_err(TrainError::part)?;
+    Ok(outcome.positions.into_flattened())
 }
