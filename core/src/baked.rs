@@ -20,7 +20,7 @@
 
 use crate::field::FieldView;
 use crate::snapshot::{u32_at, u64_at};
-use crate::{Cloth, Error, Grid, Hash64};
+use crate::{Cloth, Error, Grid, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTFELD";
 const VERSION: u32 = 1;
@@ -132,6 +132,10 @@ impl<'a> Baked<'a> {
     /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::GridSize`],
     /// [`Error::Shape`], [`Error::Checksum`], [`Error::NotFinite`], [`Error::Negative`].
     pub fn parse(bytes: &'a [u8]) -> Result<Baked<'a>, Error> {
+        in_default_environment(|| Baked::check(bytes))
+    }
+
+    fn check(bytes: &'a [u8]) -> Result<Baked<'a>, Error> {
         if bytes.len() >= 8 && !bytes.starts_with(MAGIC) {
             return Err(Error::WrongKind);
         }

@@ -4,7 +4,7 @@ use crate::force::{Planes, Springs};
 use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::math::round16;
 use crate::pins::Pins;
-use crate::{ClothDef, Error, Grid, Vector3, inertia};
+use crate::{ClothDef, Error, Grid, Vector3, in_default_environment, inertia};
 
 /// Farthest that a position may be from the cloth's origin, in m.
 pub(crate) const REACH_M: f64 = 1e6;
@@ -52,7 +52,7 @@ pub struct PositionView<'a> {
 impl<'a> Cloth<'a> {
     /// Numbers (f32) of memory that a cloth needs. Errors: those of [`ClothDef::check`].
     pub fn memory(grid: &Grid, def: &ClothDef) -> Result<usize, Error> {
-        def.check()?;
+        in_default_environment(|| def.check())?;
         Ok(Layout::new(grid, def).numbers())
     }
 
@@ -60,6 +60,10 @@ impl<'a> Cloth<'a> {
     ///
     /// Errors: those of [`ClothDef::check`], [`Error::BlockTooSmall`].
     pub fn create(grid: &Grid, def: &ClothDef, block: &'a mut [f32]) -> Result<Cloth<'a>, Error> {
+        in_default_environment(|| Cloth::lay_out(grid, def, block))
+    }
+
+    fn lay_out(grid: &Grid, def: &ClothDef, block: &'a mut [f32]) -> Result<Cloth<'a>, Error> {
         def.check()?;
         let layout = Layout::new(grid, def);
         let mut rest = block.get_mut(..layout.numbers()).ok_or(Error::BlockTooSmall)?;
@@ -97,12 +101,16 @@ impl<'a> Cloth<'a> {
             has_pull: false,
             stale: true,
         };
-        cloth.reset();
+        cloth.start_again();
         Ok(cloth)
     }
 
     /// Back to the start: flat, at rest, nothing pinned, step 0. The stiffness stays.
     pub fn reset(&mut self) {
+        in_default_environment(|| self.start_again());
+    }
+
+    fn start_again(&mut self) {
         let unit = |a: [f32; 3]| Vector3::from(a).normalize();
         let (u, v) = (unit(self.def.u_axis), unit(self.def.v_axis));
         let (rest_u, rest_v) = (self.grid.rest_u(), self.grid.rest_v());
@@ -160,14 +168,16 @@ impl<'a> Cloth<'a> {
     /// family is off is not used.
     pub fn set_stiffness_field(&mut self, field: &FieldView<'_>) {
         let (m, n) = (self.layout.rows, self.layout.columns);
-        self.set_target(|row, column| field.sample(row, column, m, n));
+        in_default_environment(|| self.set_target(|row, column| field.sample(row, column, m, n)));
     }
 
     /// The same from a function (channel, row, column) on another grid of rows x columns.
     pub(crate) fn set_stiffness_by(&mut self, rows: usize, columns: usize, k: impl Fn(usize, usize, usize) -> f32) {
         let to = (self.layout.rows, self.layout.columns);
-        self.set_target(|row, column| {
-            [0, 1, 2, 3].map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
+        in_default_environment(|| {
+            self.set_target(|row, column| {
+                [0, 1, 2, 3].map(|c| field::bilinear((rows, columns), |r, i| k(c, r, i), (row, column), to))
+            });
         });
     }
 
@@ -198,9 +208,12 @@ impl<'a> Cloth<'a> {
     /// Computes inertia and springs anew where pins or stiffness have changed. The inertia field follows the pins; a
     /// particle whose inertia changes keeps its momentum if asked.
     pub(crate) fn refresh(&mut self, keep_momentum: bool) {
-        if !self.stale {
-            return;
+        if self.stale {
+            in_default_environment(|| self.compute_springs(keep_momentum));
         }
+    }
+
+    fn compute_springs(&mut self, keep_momentum: bool) {
         let l = self.layout;
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
@@ -250,7 +263,8 @@ impl<'a> Cloth<'a> {
 
     /// Position of a particle in the world in m. Error: [`Error::NoSuchParticle`].
     pub fn world_position(&self, particle: usize) -> Result<Vector3<f64>, Error> {
-        Ok(self.position(particle)?.cast::<f64>() + Vector3::from(self.def.origin_m))
+        let local = self.position(particle)?;
+        Ok(in_default_environment(|| local.cast::<f64>() + Vector3::from(self.def.origin_m)))
     }
 
     /// Puts a particle somewhere, in the local frame in m, at rest; a pinned one with its pin.
@@ -297,16 +311,22 @@ impl<'a> Cloth<'a> {
         if force_n.iter().any(|f| f.abs() > 1e9) {
             return Err(Error::OutOfRange);
         }
-        for (plane, f) in self.pull.iter_mut().zip(force_n.iter()) {
-            let sum = read(plane, at) + f;
-            write(plane, at, sum);
-        }
+        in_default_environment(|| {
+            for (plane, f) in self.pull.iter_mut().zip(force_n.iter()) {
+                let sum = read(plane, at) + f;
+                write(plane, at, sum);
+            }
+        });
         self.has_pull = true;
         Ok(())
     }
 
     /// Kinetic energy in J: half M v^2, with the inertial mass. O(particles).
     pub fn kinetic_energy_j(&self) -> f64 {
+        in_default_environment(|| self.sum_energy())
+    }
+
+    fn sum_energy(&self) -> f64 {
         let l = self.layout;
         let mut sum = 0.0f64;
         for row in 0..l.rows {
@@ -340,9 +360,11 @@ impl<'a> Cloth<'a> {
 
     /// World to local, refused where f32 could not hold it well.
     pub(crate) fn to_local(&self, world_m: Vector3<f64>) -> Result<[f32; 3], Error> {
-        let d = world_m - Vector3::from(self.def.origin_m);
-        check_reach(d)?;
-        Ok([d.x as f32, d.y as f32, d.z as f32])
+        in_default_environment(|| {
+            let d = world_m - Vector3::from(self.def.origin_m);
+            check_reach(d)?;
+            Ok([d.x as f32, d.y as f32, d.z as f32])
+        })
     }
 }
 

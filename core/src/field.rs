@@ -1,6 +1,6 @@
 //! The stiffness field: `[channel][row][column]` in N/m at the particles.
 
-use crate::Error;
+use crate::{Error, in_default_environment};
 
 /// Order of the channels.
 pub const CHANNELS: [&str; 4] = ["warp", "weft", "shear", "bend"];
@@ -32,13 +32,15 @@ impl<'a> FieldView<'a> {
         if (channels != 1 && channels != 4) || data.len() != channels * rows * columns {
             return Err(Error::Shape);
         }
-        if !data.iter().all(|k| k.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        if data.iter().any(|k| *k < 0.0) {
-            return Err(Error::Negative);
-        }
-        Ok(FieldView { channels, rows, columns, data })
+        in_default_environment(|| {
+            if !data.iter().all(|k| k.is_finite()) {
+                return Err(Error::NotFinite);
+            }
+            if data.iter().any(|k| *k < 0.0) {
+                return Err(Error::Negative);
+            }
+            Ok(FieldView { channels, rows, columns, data })
+        })
     }
 
     /// The four channels at particle (row, column) of an m x n grid, bilinear between the field's own particles with the

@@ -5,7 +5,7 @@
 /// On x86_64 this is the SSE2 instruction, written so that LLVM can vectorise it (a call into libm cannot be);
 /// elsewhere libm, which is correctly rounded too.
 #[inline(always)]
-#[allow(unsafe_code)] // this file is the only place in the crate
+#[allow(unsafe_code)] // here and in environment.rs only
 pub fn sqrt(x: f32) -> f32 {
     #[cfg(target_arch = "x86_64")]
     {

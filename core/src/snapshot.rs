@@ -15,7 +15,7 @@
 //! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins) and the origin.
 
 use crate::layout::{PIN_NUMBERS, read};
-use crate::{Cloth, Error, Hash64};
+use crate::{Cloth, Error, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
 const VERSION: u32 = 1;
@@ -98,6 +98,10 @@ impl Cloth<'_> {
     /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::Foreign`] (another
     /// grid or definition), [`Error::Checksum`], [`Error::Shape`].
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        in_default_environment(|| self.take_over(bytes))
+    }
+
+    fn take_over(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let (header, _) = bytes.split_at_checked(HEADER).ok_or(Error::Truncated)?;
         if !header.starts_with(MAGIC) {
             return Err(Error::WrongKind);

@@ -1,7 +1,7 @@
 use crate::force::{Substep, position_row, velocity_row};
 use crate::layout::{copy, span};
 use crate::math::min;
-use crate::{Cloth, Error};
+use crate::{Cloth, Error, in_default_environment};
 
 /// What happened in a step, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -21,8 +21,14 @@ impl StepFlags {
 impl Cloth<'_> {
     /// One frame: `substeps` substeps of symplectic Euler (eq. 17). The pins move to their targets.
     ///
+    /// The same bits whatever floating-point modes the caller has set.
+    ///
     /// Error: [`Error::NoStiffness`].
     pub fn step(&mut self) -> Result<StepFlags, Error> {
+        in_default_environment(|| self.frame())
+    }
+
+    fn frame(&mut self) -> Result<StepFlags, Error> {
         if !self.has_stiffness {
             return Err(Error::NoStiffness);
         }

@@ -1,7 +1,7 @@
 use crate::force::View;
 use crate::layout::{Layout, read};
 use crate::math::sqrt;
-use crate::{Cloth, Grid};
+use crate::{Cloth, Grid, in_default_environment};
 
 /// Strain of the structural springs: (length - rest length) / rest length.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -15,6 +15,10 @@ pub struct Strain {
 impl Cloth<'_> {
     /// Strain of the structural springs as they are now. O(particles).
     pub fn strain(&self) -> Strain {
+        in_default_environment(|| self.measure_strain())
+    }
+
+    fn measure_strain(&self) -> Strain {
         let mut sum = 0.0f64;
         let mut largest = f32::NEG_INFINITY;
         let mut count = 0u32;
@@ -29,7 +33,7 @@ impl Cloth<'_> {
     /// Calls `visit(a, b, strain)` for every structural spring between the particles a and b: of each row first those
     /// along u, then those along v.
     pub fn each_structural_strain(&self, visit: impl FnMut(usize, usize, f32)) {
-        each_structural(self.grid(), &self.layout, self.x.view(), visit);
+        in_default_environment(|| each_structural(self.grid(), &self.layout, self.x.view(), visit));
     }
 }
 

@@ -1,4 +1,3 @@
-use crate::environment::Environment;
 use crate::handle::{ClothHandle, GridHandle, TAUT_CLOTH_ALIGN, TAUT_CLOTH_HEADER_BYTES, change, grid};
 use crate::pointer::{Out, array_mut, value};
 use crate::result::{Code, answer};
@@ -81,7 +80,6 @@ pub unsafe extern "C" fn taut_cloth_memory(on: *const GridHandle, def: *const Cl
     answer(|| {
         // SAFETY: the caller lends a grid, a definition and a place for the answer.
         let (grid, def, out) = unsafe { (grid(on)?, checked(def)?, Out::new(out)?) };
-        let _environment = Environment::enter();
         out.set(Memory { size: bytes(taut_core::Cloth::memory(grid, &def)?)?, align: TAUT_CLOTH_ALIGN });
         Ok(())
     })
@@ -112,7 +110,6 @@ pub unsafe extern "C" fn taut_cloth_create(
     answer(|| {
         // SAFETY: the caller lends a grid, a definition and a place for the answer.
         let (grid, def, out) = unsafe { (grid(on)?, checked(def)?, Out::new(out)?) };
-        let _environment = Environment::enter();
         let numbers = taut_core::Cloth::memory(grid, &def)?;
         let handle = block.cast::<ClothHandle>();
         // SAFETY: the caller hands in a block of his own; an array of no values only checks the pointer.

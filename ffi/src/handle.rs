@@ -1,8 +1,7 @@
 //! What the handles of C point to: the first bytes of the blocks that the caller handed in.
 
-use taut_core::{Cloth, Grid};
+use taut_core::{Cloth, Grid, in_default_environment};
 
-use crate::environment::Environment;
 use crate::pointer::value;
 use crate::result::{Code, answer};
 
@@ -82,9 +81,8 @@ pub(crate) unsafe fn look(handle: *const ClothHandle, body: impl FnOnce(&Cloth<'
     answer(|| {
         // SAFETY: the caller promises what `check` needs.
         unsafe { check(handle) }?;
-        let _environment = Environment::enter();
         // SAFETY: made by `taut_cloth_create`, as the magic number tells, and nobody changes it.
-        body(unsafe { &(*handle).cloth })
+        in_default_environment(|| body(unsafe { &(*handle).cloth }))
     })
 }
 
@@ -100,9 +98,8 @@ pub(crate) unsafe fn change(
     answer(|| {
         // SAFETY: the caller promises what `check` needs.
         unsafe { check(handle) }?;
-        let _environment = Environment::enter();
         // SAFETY: made by `taut_cloth_create`, as the magic number tells, and nobody else uses it.
-        body(unsafe { &mut (*handle).cloth })
+        in_default_environment(|| body(unsafe { &mut (*handle).cloth }))
     })
 }
 

@@ -18,7 +18,6 @@ extern crate std;
 #[cfg(all(panic = "abort", not(test)))]
 mod panic;
 
-mod environment;
 mod pointer;
 
 // The rest in the order of the header, hence the gaps: rustfmt sorts what stands together.

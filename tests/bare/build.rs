@@ -5,13 +5,15 @@ use std::env::var;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=cortex_m.ld");
-    let linux = var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "linux");
     let folder = var("CARGO_MANIFEST_DIR").unwrap_or_default();
-    let arguments = if linux {
-        // not position independent: there is no loader that could relocate it
-        ["-nostartfiles", "-nostdlib", "-static", "-no-pie"].map(String::from).to_vec()
-    } else {
-        vec![format!("-T{folder}/cortex_m.ld")]
+    let target = var("TARGET").unwrap_or_default();
+    // not position independent: there is no loader that could relocate it
+    let arguments: &[&str] = match target.split('-').next() {
+        Some("x86_64") => &["-nostartfiles", "-nostdlib", "-static", "-no-pie"],
+        Some("i686") => &["-static", "--no-pie"],
+        Some("wasm32") => &["--no-entry", "--export=run"],
+        Some("thumbv7em") => &[&format!("-T{folder}/cortex_m.ld")],
+        _ => &[],
     };
     for argument in arguments {
         println!("cargo::rustc-link-arg-bins={argument}");

@@ -2,6 +2,9 @@
 
 use core::arch::{asm, naked_asm};
 
+/// Whether the machine is fast enough for the long runs.
+pub const FAST: bool = !cfg!(debug_assertions);
+
 const WRITE: usize = 1;
 const EXIT: usize = 60;
 
@@ -28,6 +31,14 @@ pub fn write(text: &[u8]) {
     if done != bytes {
         exit(1);
     }
+}
+
+/// Flush-to-zero, denormals-are-zero and rounding upwards.
+pub fn set_modes_of_an_engine() -> bool {
+    let modes = 0x1f80u32 | 0x8040 | 0x4000;
+    // SAFETY: sets modes that are allowed; only whole numbers are computed in this crate.
+    unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const modes, options(nostack)) };
+    true
 }
 
 /// Ends the process.
@@ -62,3 +73,8 @@ unsafe extern "C" fn memset(to: *mut u8, value: i32, bytes: usize) -> *mut u8 {
     }
     to
 }
+
+// The precompiled core library is built for unwinding and names this symbol in what only an unoptimised program keeps.
+// Nothing unwinds here, so nobody calls it.
+#[cfg(debug_assertions)]
+core::arch::global_asm!(".weak rust_eh_personality", "rust_eh_personality: ud2");
