@@ -19,8 +19,12 @@ pub const BEND_SHARE: f32 = 0.02;
 /// Share of the limit of the flat sheet that [`Budget::Tuned`] uses.
 pub const TUNED_SHARE: f32 = 0.8;
 
-/// Share of its bound that [`Budget::Certified`] uses: rounding must not lift it above 1.
-const CERTIFIED_SHARE: f32 = 0.99;
+/// Share of its bound that [`Budget::Certified`] uses.
+///
+/// Below 1 no shape of the cloth is unstable while it keeps that shape. But a violent motion changes the Hessian from step
+/// to step, and near the bound the fastest modes then draw energy from the step itself: at 0.99 a crumpled start boils for
+/// ever, with damping 1/s too. At 0.7 every one of 10,000 hostile starts came to rest with it (docs/budget.md).
+pub const CERTIFIED_SHARE: f32 = 0.7;
 
 /// What the budget made of the stiffness field.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -196,5 +200,148 @@ fn bound(grid: &Grid, budget: Budget, l: &Layout, at: usize, inverse: &[f32], k:
             let half = 0.5 * (a - d);
             0.5 * (a + d) + sqrt(half * half + b * b)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::field::FieldView;
+    use crate::{Cloth, Families, GridDef, noise};
+    use std::vec;
+    use std::vec::Vec;
+
+    struct Random(u64, u32);
+
+    impl Random {
+        fn unit(&mut self) -> f32 {
+            self.1 += 1;
+            noise::uniform(self.0, self.1)
+        }
+
+        fn below(&mut self, n: usize) -> usize {
+            ((self.unit() * n as f32) as usize).min(n - 1)
+        }
+
+        fn log(&mut self, low: f32, high: f32) -> f32 {
+            libm::expf(libm::logf(low) + self.unit() * libm::logf(high / low))
+        }
+
+        /// A number as a network may print it: any bits, a value that breaks things, or a stiffness.
+        fn printed(&mut self) -> f32 {
+            const BAD: [f32; 10] =
+                [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, -0.0, 0.0, 1e-45, 1e30, f32::MAX, f32::MIN];
+            match self.below(4) {
+                0 => f32::from_bits((self.below(1 << 16) as u32) << 16 | self.below(1 << 16) as u32),
+                1 => BAD[self.below(10)],
+                _ => self.log(1e-6, 1e9),
+            }
+        }
+    }
+
+    /// Twice the stiffness that pulls at each particle as a matrix over (u, v), from the springs themselves.
+    fn pull_at(c: &Cloth<'_>) -> Vec<[f64; 4]> {
+        let l = c.layout;
+        let (u, v) = (f64::from(c.grid.rest_u()), f64::from(c.grid.rest_v()));
+        let d = libm::hypot(u, v);
+        let k = &c.springs;
+        let planes: [(&[f32], isize, isize, f64, f64); 6] = [
+            (k.u, 0, 1, 1.0, 0.0),
+            (k.v, 1, 0, 0.0, 1.0),
+            (k.right, 1, 1, u / d, v / d),
+            (k.left, 1, -1, -u / d, v / d),
+            (k.bend_u, 0, 2, 1.0, 0.0),
+            (k.bend_v, 2, 0, 0.0, 1.0),
+        ];
+        let mut pull = vec![[0.0; 4]; l.plane];
+        for (plane, rows, columns, nu, nv) in planes {
+            for row in 0..l.rows {
+                for column in 0..l.columns {
+                    let (r, c2) = (row as isize + rows, column as isize + columns);
+                    let at = l.at(row, column);
+                    if plane.is_empty() || r >= l.rows as isize || !(0..l.columns as isize).contains(&c2) {
+                        continue;
+                    }
+                    let other = l.at(r as usize, c2 as usize);
+                    let k = plane[at];
+                    assert!(k.is_finite() && k >= 0.0, "{k} N/m");
+                    let k = f64::from(k);
+                    for (here, there) in [(at, other), (other, at)] {
+                        let w = if c.inverse[there] > 0.0 { 2.0 * k } else { k };
+                        for (p, n) in pull[here].iter_mut().zip([nu * nu, nv * nv, nu * nv, 1.0]) {
+                            *p += w * n;
+                        }
+                    }
+                }
+            }
+        }
+        pull
+    }
+
+    /// One random cloth with a field of the right shape and any numbers: its springs are finite, and the bound holds at every
+    /// particle, computed anew in f64. Returns the largest share of the limit.
+    fn carried(seed: u64) -> f64 {
+        let mut r = Random(seed, 0);
+        let families = [1, 3, 5, 7][r.below(4)];
+        let (m, n) = (2 + r.below(5) as u32, 2 + r.below(5) as u32);
+        let (width_m, height_m) = (r.log(1e-3, 1e3), r.log(1e-3, 1e3));
+        let grid =
+            Grid::new(&GridDef { rows: m, columns: n, width_m, height_m, families: Families(families) }).unwrap();
+        let def = ClothDef {
+            rate_hz: r.log(1.0, 1e4),
+            substeps: 1 + r.below(64) as u32,
+            density_kg_m2: r.log(1e-6, 1e6),
+            damping_per_s: [0.0, 0.9][r.below(2)],
+            budget: [Budget::Certified, Budget::Tuned][r.below(2)],
+            inertia_radius_m: [0.0, width_m][r.below(2)],
+            max_pins: 4,
+            ..ClothDef::default()
+        };
+        let mut block = vec![f32::NAN; Cloth::memory(&grid, &def).unwrap()];
+        let mut c = Cloth::create(&grid, &def, &mut block).unwrap();
+        let channels = [1, 4][r.below(2)];
+        let (rows, columns) = if r.below(2) == 0 { (m, n) } else { (2, 3) };
+        let data: Vec<f32> = (0..channels * rows * columns).map(|_| r.printed()).collect();
+        let field = FieldView::sanitised(channels as usize, rows as usize, columns as usize, &data).unwrap();
+        c.set_stiffness_field(&field);
+        for _ in 0..r.below(4) {
+            c.pin(r.below(grid.particles())).unwrap();
+        }
+        let report = c.budget().unwrap();
+        assert!((0.0..=1.0).contains(&report.cut_fraction) && report.max_dt_s > 0.0, "seed {seed}: {report:?}");
+        let dt = f64::from(def.dt_s());
+        let allowed = 4.0 / (dt * dt) - 2.0 * f64::from(def.damping_per_s) / dt;
+        let mut highest = 0.0f64;
+        for (at, [a, b, ab, sum]) in pull_at(&c).into_iter().enumerate() {
+            let (limit, k) = match def.budget {
+                Budget::Certified => (CERTIFIED_SHARE, sum),
+                Budget::Tuned => (TUNED_SHARE, 0.5 * (a + b) + libm::hypot(0.5 * (a - b), ab)),
+            };
+            let share = k * f64::from(c.inverse[at]) / (f64::from(limit) * allowed);
+            assert!(share <= 1.0 + 1e-4, "seed {seed}: {share} of the budget, {def:?}");
+            highest = highest.max(share);
+        }
+        highest
+    }
+
+    fn all_are_carried(seeds: core::ops::Range<u64>) {
+        let n = seeds.end - seeds.start;
+        let cut = seeds.filter(|seed| carried(*seed) > 0.999).count() as u64;
+        // and the budget was what held them
+        assert!(cut > n / 4, "only {cut} of {n} were cut");
+    }
+
+    #[test]
+    fn any_field_is_carried() {
+        all_are_carried(0..5_000);
+    }
+
+    /// `cargo test -p taut --lib -- --ignored a_million` (about a minute).
+    #[test]
+    #[ignore = "a minute"]
+    fn a_million_fields_are_carried() {
+        all_are_carried(5_000..1_005_000);
     }
 }

@@ -4,9 +4,9 @@ use crate::{Error, Hash64};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// omega^2 <= max over the particles of sum (1 + [other end free]) k / M, which holds for any shape of the cloth: it
-    /// never grows exponentially, from any start, at about half the stiffness of `Tuned`. A violent start needs damping and
-    /// the speed limit to come to rest.
+    /// omega^2 <= 0.7 of the limit, with the bound max over the particles of sum (1 + [other end free]) k / M, which holds
+    /// for any shape of the cloth: it never grows exponentially, from any start, and with damping of 1/s it comes to rest
+    /// without any limit, at about 0.4 of the stiffness of `Tuned`.
     Certified = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping; the default.
     Tuned = 1,

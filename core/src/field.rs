@@ -1,5 +1,6 @@
 //! The stiffness field: `[channel][row][column]` in N/m at the particles.
 
+use crate::math::min;
 use crate::{Error, in_default_environment};
 
 /// Order of the channels.
@@ -18,6 +19,7 @@ pub struct FieldView<'a> {
     rows: usize,
     columns: usize,
     data: &'a [f32],
+    forgiving: bool,
 }
 
 impl<'a> FieldView<'a> {
@@ -25,13 +27,7 @@ impl<'a> FieldView<'a> {
     ///
     /// Errors: [`Error::GridSize`], [`Error::Shape`], [`Error::NotFinite`], [`Error::Negative`].
     pub fn new(channels: usize, rows: usize, columns: usize, data: &'a [f32]) -> Result<Self, Error> {
-        let side = |n: usize| (2..=crate::Grid::MAX_SIDE as usize).contains(&n);
-        if !side(rows) || !side(columns) {
-            return Err(Error::GridSize);
-        }
-        if (channels != 1 && channels != 4) || data.len() != channels * rows * columns {
-            return Err(Error::Shape);
-        }
+        let field = FieldView::sanitised(channels, rows, columns, data)?;
         in_default_environment(|| {
             if !data.iter().all(|k| k.is_finite()) {
                 return Err(Error::NotFinite);
@@ -39,19 +35,50 @@ impl<'a> FieldView<'a> {
             if data.iter().any(|k| *k < 0.0) {
                 return Err(Error::Negative);
             }
-            Ok(FieldView { channels, rows, columns, data })
+            Ok(FieldView { forgiving: false, ..field })
         })
+    }
+
+    /// The same for numbers that nobody vouches for, such as those that a network printed: every field of the right shape
+    /// is taken. Each number is read by this rule: NaN and what is not above 0 is 0, what is above [`MAX_STIFFNESS`]
+    /// (infinity too) is [`MAX_STIFFNESS`]. [`FieldView::repaired`] tells how many are read otherwise than they stand.
+    ///
+    /// Errors: [`Error::GridSize`], [`Error::Shape`].
+    pub fn sanitised(channels: usize, rows: usize, columns: usize, data: &'a [f32]) -> Result<Self, Error> {
+        let side = |n: usize| (2..=crate::Grid::MAX_SIDE as usize).contains(&n);
+        if !side(rows) || !side(columns) {
+            return Err(Error::GridSize);
+        }
+        if (channels != 1 && channels != 4) || data.len() != channels * rows * columns {
+            return Err(Error::Shape);
+        }
+        Ok(FieldView { channels, rows, columns, data, forgiving: true })
+    }
+
+    /// How many numbers the rule of [`FieldView::sanitised`] changes; 0 for a field that [`FieldView::new`] has checked.
+    pub fn repaired(&self) -> usize {
+        if !self.forgiving {
+            return 0;
+        }
+        in_default_environment(|| self.data.iter().filter(|k| sane(**k) != **k).count())
     }
 
     /// The four channels at particle (row, column) of an m x n grid, bilinear between the field's own particles with the
     /// corners aligned.
     pub fn sample(&self, row: usize, column: usize, m: usize, n: usize) -> [f32; 4] {
         let value = |c: usize, row: usize, column: usize| {
-            self.data.get((c * self.rows + row) * self.columns + column).copied().unwrap_or(0.0)
+            let k = self.data.get((c * self.rows + row) * self.columns + column).copied().unwrap_or(0.0);
+            if self.forgiving { sane(k) } else { k }
         };
         let at = |c: usize| bilinear((self.rows, self.columns), |r, k| value(c, r, k), (row, column), (m, n));
         if self.channels == 1 { SINGLE_RATIOS.map(|r| r * at(0)) } else { [at(0), at(1), at(2), at(3)] }
     }
+}
+
+/// What a number of a field means that nobody vouches for.
+fn sane(k: f32) -> f32 {
+    // a NaN is not above 0
+    if k > 0.0 { min(k, MAX_STIFFNESS) } else { 0.0 }
 }
 
 /// The value at place `at` of a grid of the size `to` of something known on a grid of the size `from` (both at least 2
@@ -97,6 +124,23 @@ mod tests {
         for (c, v) in s.iter().enumerate() {
             assert!((v - (100.0 * c as f32 + 2.0 * 2.0 + 3.0)).abs() < 1e-4, "{v}");
         }
+    }
+
+    #[test]
+    fn a_sanitised_field_follows_its_rule() {
+        let d = [f32::NAN, -1.0, f32::NEG_INFINITY, -0.0, f32::INFINITY, 1e30, 2.5, 1e-40];
+        let mut data = [0.0; 16];
+        data[..8].copy_from_slice(&d);
+        let f = FieldView::sanitised(4, 2, 2, &data).unwrap();
+        assert_eq!(f.repaired(), 5);
+        let read = |i: usize| f.sample(i / 2 % 2, i % 2, 2, 2)[i / 4];
+        let want = [0.0, 0.0, 0.0, 0.0, MAX_STIFFNESS, MAX_STIFFNESS, 2.5, 1e-40];
+        for (i, k) in want.into_iter().enumerate() {
+            assert_eq!(read(i).to_bits(), f32::to_bits(k), "number {i}");
+        }
+        assert_eq!(FieldView::sanitised(4, 2, 2, &data[..15]).unwrap_err(), Error::Shape);
+        let good = [3.0; 16];
+        assert_eq!(FieldView::sanitised(4, 2, 2, &good).unwrap().repaired(), 0);
     }
 
     #[test]

@@ -45,7 +45,7 @@ mod snapshot;
 mod step;
 mod strain;
 
-pub use budget::{BEND_SHARE, BudgetReport, TUNED_SHARE};
+pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};
 pub use def::{Budget, ClothDef, Features};
 pub use environment::in_default_environment;

@@ -19,7 +19,6 @@ need "$debian_rustc" rustc-web test -x "$debian_rustc"
 need "$debian_cargo" cargo-web test -x "$debian_cargo"
 need "the source of core" rust-web-src core_source
 need qemu-aarch64 qemu-user command -v qemu-aarch64
-need qemu-i386 qemu-user command -v qemu-i386
 need qemu-system-arm qemu-system-arm command -v qemu-system-arm
 need node nodejs command -v node
 # the linker that comes with every toolchain, or the system's
@@ -44,6 +43,9 @@ env -u RUSTUP_TOOLCHAIN RUSTC="$debian_rustc" RUSTC_BOOTSTRAP=1 \
   "$debian_cargo" build --release --locked -Zbuild-std=core -Zbuild-std-features=compiler-builtins-mem \
   "${targets[@]/#/--target=}" --target-dir "$folder/cross"
 
+# the kernel runs it, or where it was built without 32-bit programs the emulator
+run_i686=(env)
+"$folder/cross/i686-unknown-linux-gnu/release/taut-bare" > /dev/null 2>&1 || [ $? -lt 126 ] || run_i686=(qemu-i386)
 program() { echo "$folder/cross/$1/release/taut-bare"; }
 here=$("$folder/host/release/taut-bare")
 short=$(grep -v ' 10000 ' <<< "$here")
@@ -62,9 +64,9 @@ compare() { # name, what it must print, command...
   fi
 }
 echo "$here"
-[ "$(grep -c '^[a-z0-9]* *10\?000 [0-9a-f]\{16\}$' <<< "$short")" -ge 12 ] || { echo "the program printed too little"; exit 1; }
+[ "$(grep -c '^[a-z0-9]* *10\?000 [0-9a-f]\{16\}$' <<< "$short")" -ge 8 ] || { echo "the program printed too little"; exit 1; }
 compare "x86_64, a debug build" "$short" "$folder/host/debug/taut-bare"
-compare "i686 with SSE2 (qemu-user)" "$short" qemu-i386 "$(program i686-unknown-linux-gnu)"
+compare "i686 with SSE2" "$short" "${run_i686[@]}" "$(program i686-unknown-linux-gnu)"
 compare "aarch64 (qemu-user)" "$short" qemu-aarch64 "$(program aarch64-unknown-none)"
 # the emulator shows what the program writes on standard error
 compare "thumbv7em, Cortex-M4 (qemu-system-arm)" "$short" timeout 300 qemu-system-arm -M mps2-an386 -nographic \
