@@ -4,9 +4,9 @@ use crate::{Error, Hash64};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// omega^2 <= 0.7 of the limit, with the bound max over the particles of sum (1 + [other end free]) k / M, which holds
-    /// for any shape of the cloth: it never grows exponentially, from any start, and with damping of 1/s it comes to rest
-    /// without any limit, at about 0.4 of the stiffness of `Tuned`.
+    /// 0.35 of the limit of the flat sheet, so at most 0.7 of it in any other shape: it never grows exponentially, from any
+    /// start, and with damping of 1/s it comes to rest without any limit on speed or compression. 0.44 of the stiffness of
+    /// `Tuned`.
     Certified = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping; the default.
     Tuned = 1,

