@@ -8,5 +8,6 @@ mod drape;
 mod layout;
 mod library;
 mod refusals;
+mod sanitizers;
 mod snippet;
 mod symbols;
