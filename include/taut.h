@@ -176,8 +176,8 @@ enum taut_budget
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // A bound that holds for every shape of the cloth: stable from any start, at about half the stiffness of
-    // TAUT_BUDGET_TUNED.
+    // 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    // damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     // 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
@@ -476,6 +476,20 @@ taut_result taut_cloth_set_stiffness_field(taut_cloth *cloth,
                                            uint32_t rows,
                                            uint32_t columns,
                                            const float *data);
+
+// The same for numbers that nobody vouches for, such as those that a network printed: every field of the right shape is
+// taken. NaN and negative numbers are read as 0, what is above 1e9 (infinity too) as 1e9. What the step cannot carry is cut
+// by the budget, as always. How many numbers were read otherwise than they stand goes to out_repaired, which may be NULL.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE
+// (channels). Then the former stiffness stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_stiffness_field_sanitised(taut_cloth *cloth,
+                                                     uint32_t channels,
+                                                     uint32_t rows,
+                                                     uint32_t columns,
+                                                     const float *data,
+                                                     uint32_t *out_repaired);
 
 // Sets the stiffness from a baked field file of size bytes, resampled where its grid is another. What the file tells about
 // the fabric goes to out_fabric, which may be NULL.
