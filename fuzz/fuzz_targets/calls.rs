@@ -81,14 +81,8 @@ fuzz_target!(|data: &[u8]| {
                     let code = capi::taut_cloth_set_stiffness_field(cloth, c, m, n, field.as_ptr());
                     assert_eq!(code == OK, good);
                     let mut repaired = 0;
-                    let code = capi::taut_cloth_set_stiffness_field_sanitised(
-                        cloth,
-                        c,
-                        m,
-                        n,
-                        field.as_ptr(),
-                        &mut repaired,
-                    );
+                    let code =
+                        capi::taut_cloth_set_stiffness_field_sanitised(cloth, c, m, n, field.as_ptr(), &mut repaired);
                     assert!(code == OK && repaired as usize <= field.len());
                 }
                 9 => {

@@ -66,7 +66,8 @@ impl Scene {
 
     fn def(&self) -> ClothDef {
         // level, so that the sheet swings and the state is far from rest
-        let def = ClothDef { rate_hz: 240.0, substeps: 1, max_pins: SIDE, v_axis: [0.0, 0.0, 1.0], ..ClothDef::default() };
+        let def =
+            ClothDef { rate_hz: 240.0, substeps: 1, max_pins: SIDE, v_axis: [0.0, 0.0, 1.0], ..ClothDef::default() };
         match self.what {
             What::Edge => ClothDef {
                 budget: Budget::Certified,

@@ -33,8 +33,7 @@ fn check(name: &str, printed: Vec<u8>) {
 
 #[test]
 fn the_sanitizers_find_nothing() {
-    const OPTIONS: [&str; 3] =
-        ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"];
+    const OPTIONS: [&str; 3] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"];
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("program");
     for (language, source) in PROGRAMS {
