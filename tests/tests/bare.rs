@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The scenes, from the same file.
+#[allow(dead_code, reason = "only the hashes are looked at")]
 #[path = "../bare/src/scene.rs"]
 mod scene;
 
