@@ -26,6 +26,7 @@
 #![deny(unsafe_code)]
 
 pub mod baked;
+mod bounds;
 mod budget;
 mod cloth;
 mod def;
@@ -38,12 +39,15 @@ mod inertia;
 mod lanes;
 mod layout;
 mod math;
+mod mesh;
 pub mod noise;
+mod normals;
 mod pins;
 mod snapshot;
 mod step;
 mod strain;
 
+pub use bounds::Bounds;
 pub use budget::{BEND_SHARE, BudgetReport, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};
 pub use def::{Budget, ClothDef, Features};
