@@ -45,6 +45,10 @@ mod particle;
 
 mod step;
 
+mod step_all;
+
 mod read;
+
+mod mesh;
 
 mod rollback;
