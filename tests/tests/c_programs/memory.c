@@ -64,7 +64,8 @@ int main(void)
                         taut_memory memory;
                         const taut_result r = taut_cloth_memory(grid, &def, &memory);
                         const size_t bytes = TAUT_CLOTH_BYTES(rows, columns, families, features, pins[p]);
-                        if (r != TAUT_OK || memory.size != bytes || memory.align != TAUT_CLOTH_ALIGN) {
+                        if (r != TAUT_OK || memory.size != bytes || memory.align != TAUT_CLOTH_ALIGN ||
+                            bytes % TAUT_CLOTH_ALIGN != 0) { // so that blocks can stand side by side
                             printf("%u x %u, families %u, features %u, %u pins: %s, asked for %zu, macro %zu\n",
                                    (unsigned)rows, (unsigned)columns, (unsigned)families, (unsigned)features,
                                    (unsigned)pins[p], taut_result_name(r), memory.size, bytes);
