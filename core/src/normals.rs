@@ -16,37 +16,60 @@ impl Cloth<'_> {
         // max: a grid has columns, but only so does the compiler know that nothing is divided by zero
         let columns = self.layout.columns.max(1);
         let (row, column) = (particle / columns, particle % columns);
-        let mut sum = [0.0f32; 3];
-        // the cells above left, above right, below left, below right, each by its upper left corner
-        for (down, right) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            let (row, column) = (row + down, column + right);
-            if row == 0 || column == 0 || row >= self.layout.rows || column >= self.layout.columns {
-                continue;
-            }
-            let area = self.cell(self.layout.at(row - 1, column - 1));
-            for (s, a) in sum.iter_mut().zip(area) {
-                *s += a;
-            }
-        }
-        Ok(unit(sum).into())
+        Ok(mean(self.cells(row, column), self.cells(row, column + 1)))
     }
 
-    /// Twice the vector area of the cell whose upper left corner is at a place, in m^2.
-    fn cell(&self, at: usize) -> [f32; 3] {
-        let below = at + self.layout.stride;
-        let way = |plane: &[f32]| (read(plane, below + 1) - read(plane, at), read(plane, at + 1) - read(plane, below));
-        let ((px, qx), (py, qy), (pz, qz)) = (way(self.x.x), way(self.x.y), way(self.x.z));
+    /// The normals of all particles in their order, with the bits of [`Cloth::normal`] at half the cost.
+    pub fn normals(&self) -> impl Iterator<Item = Vector3<f32>> {
+        (0..self.layout.rows).flat_map(move |row| {
+            let mut left = self.cells(row, 0);
+            (0..self.layout.columns).map(move |column| {
+                let right = self.cells(row, column + 1);
+                let normal = mean(left, right);
+                left = right;
+                normal
+            })
+        })
+    }
+
+    /// Twice the vector areas in m^2 of the cell above a row, and of that below it, both to the left of a column. Zero where
+    /// there is none.
+    fn cells(&self, row: usize, column: usize) -> [[f32; 3]; 2] {
+        [self.cell(row, column), self.cell(row + 1, column)]
+    }
+
+    /// The same of the cell whose lower right corner is at (row, column).
+    fn cell(&self, row: usize, column: usize) -> [f32; 3] {
+        if row == 0 || column == 0 || row >= self.layout.rows || column >= self.layout.columns {
+            return [0.0; 3];
+        }
+        let above = self.layout.at(row - 1, column - 1);
+        let below = self.layout.at(row, column - 1);
+        let ways = |p: &[f32]| (read(p, below + 1) - read(p, above), read(p, above + 1) - read(p, below));
+        let ((px, qx), (py, qy), (pz, qz)) = (ways(self.x.x), ways(self.x.y), ways(self.x.z));
         [py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx]
     }
 }
 
-/// The vector at length 1. Scaled by its largest number first: squares of areas of 1e-20 m^2 are no f32.
+/// The direction of the sum: above left, above right, below left, below right.
+fn mean(left: [[f32; 3]; 2], right: [[f32; 3]; 2]) -> Vector3<f32> {
+    let mut sum = [0.0f32; 3];
+    for cell in [left[0], right[0], left[1], right[1]] {
+        for (s, a) in sum.iter_mut().zip(cell) {
+            *s += a;
+        }
+    }
+    unit(sum).into()
+}
+
+/// The vector at length 1, 0 if it has no direction.
 fn unit(v: [f32; 3]) -> [f32; 3] {
     let largest = max(v[0].abs(), max(v[1].abs(), v[2].abs()));
     if largest == 0.0 || !v.iter().all(|x| x.is_finite()) {
         return [0.0; 3];
     }
-    let [x, y, z] = v.map(|x| x / largest);
-    let length = sqrt(x * x + y * y + z * z);
-    [x / length, y / length, z / length]
+    // elsewhere the squares are no f32: a cell may have 1e-20 m^2
+    let v = if (1e-15..=1e15).contains(&largest) { v } else { v.map(|x| x / largest) };
+    let length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    v.map(|x| x / length)
 }

@@ -142,6 +142,25 @@ fn no_area_no_normal() {
     assert!((0..9).all(|i| c.normal(i) == Ok(Vector3::zeros())));
 }
 
+/// All at once are the same as one by one, to the bit, on a crumpled sheet of any size of cells.
+#[test]
+fn the_list_of_normals_is_that_of_the_particles() {
+    let mut random = Random::new(5);
+    for (rows, columns, size) in [(2, 2, 1.0), (7, 4, 1e-9), (5, 19, 1e5)] {
+        let g = squares(rows, columns, 0.1, Families::ALL);
+        let mut c = cloth(&g, &bare());
+        for i in 0..g.particles() {
+            c.set_position(i, random.vector(size)).unwrap();
+        }
+        let all: Vec<Vector3<f32>> = c.normals().collect();
+        assert_eq!(all.len(), g.particles());
+        for (i, n) in all.iter().enumerate() {
+            assert_eq!(n.map(f32::to_bits), c.normal(i).unwrap().map(f32::to_bits));
+            assert!((n.norm() - 1.0).abs() < 1e-6, "{n}");
+        }
+    }
+}
+
 /// The weights are the areas: a long cell beside a short one that is bent up.
 #[test]
 fn large_cells_count_more() {

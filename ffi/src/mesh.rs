@@ -125,8 +125,9 @@ pub unsafe extern "C" fn taut_cloth_copy_normals_f32(
     unsafe {
         look(cloth, |cloth| {
             let places = Vertices::new::<[f32; 3]>(out, out_size, stride, cloth.grid().particles())?;
-            // the index is always that of a particle, so the zeros are never written
-            places.fill(|i| cloth.normal(i).map_or([0.0; 3], Into::into));
+            let mut normals = cloth.normals();
+            // there are as many normals as places, so the zeros are never written
+            places.fill(|_| normals.next().map_or([0.0; 3], Into::into));
             Ok(())
         })
     }
