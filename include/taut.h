@@ -28,7 +28,7 @@
 // origin_m. No axis is "up". Particle (row, column) has the index row * columns + column; u runs along the columns, v along
 // the rows; warp runs along v, weft along u.
 //
-// docs/c-api.md has the longer story, examples/c/drape.c a program.
+// docs/c-api.md has the longer story, examples/c/drape.c a program; taut.hpp is this API for C++17.
 
 
 #ifndef TAUT_H
@@ -41,20 +41,42 @@
 #define TAUT_VERSION_ID \
     (((uint32_t)TAUT_VERSION_MAJOR << 24) | ((uint32_t)TAUT_VERSION_MINOR << 16) | (uint32_t)TAUT_VERSION_PATCH)
 
+// TAUT_API is before every function. With the static library, and outside of Windows, there is nothing to set. A program for
+// Windows that links taut.dll is compiled with TAUT_SHARED (the CMake target taut::shared sets it); who builds the functions
+// into a library of his own that hands them on, with TAUT_EXPORTS.
+#if defined(TAUT_API)
+#elif defined(_WIN32) && defined(TAUT_EXPORTS)
+#define TAUT_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(TAUT_SHARED)
+#define TAUT_API __declspec(dllimport)
+#elif defined(__GNUC__) && !defined(_WIN32)
+#define TAUT_API __attribute__((visibility("default")))
+#else
+#define TAUT_API
+#endif
+
+// Triangles of a grid as a constant expression: what taut_grid_triangle_count gives.
+#define TAUT_TRIANGLES(rows, columns) ((size_t)2 * ((size_t)(rows) - 1) * ((size_t)(columns) - 1))
+
 // Bytes of a cloth's block as a constant expression, for static storage: the same number that taut_cloth_memory gives for a
 // grid of rows x columns with these TAUT_FAMILY_* and a definition with these TAUT_FEATURE_* and max_pins, which is at most
 // rows * columns.
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
-                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))))
+                  TAUT_CLOTH_LISTS_(max_pins)))
 
-// Parts of TAUT_CLOTH_BYTES.
-#define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
-#define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
+// Parts of TAUT_CLOTH_BYTES. A plane is one number per particle with its borders. This is the table of what takes memory:
+// first the planes of every cloth, then a line for each family and each feature; and the lists with a capacity.
 #define TAUT_CLOTH_PLANES_(families, features)                                                               \
-    ((size_t)17 + (((families) & TAUT_FAMILY_SHEAR) ? 3 : 0) + (((families) & TAUT_FAMILY_BEND) ? 3 : 0) +   \
-     (((features) & TAUT_FEATURE_PULL) ? 3 : 0))
+    ((size_t)17 +                                                                                            \
+     TAUT_IF_(families, TAUT_FAMILY_SHEAR, 3) +                                                              \
+     TAUT_IF_(families, TAUT_FAMILY_BEND, 3) +                                                               \
+     TAUT_IF_(features, TAUT_FEATURE_PULL, 3))
+#define TAUT_CLOTH_LISTS_(max_pins) TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))
+#define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
+#define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
+#define TAUT_IF_(bits, bit, numbers) (((bits) & (bit)) ? (size_t)(numbers) : (size_t)0)
 
 
 // Version of this header and library, as in 1.2.3.
@@ -350,6 +372,14 @@ typedef struct {
     float mean;
 } taut_strain;
 
+// A box with sides along the axes, in the world in m.
+typedef struct {
+    // Smallest x, y and z in m.
+    double low_m[3];
+    // Largest x, y and z in m.
+    double high_m[3];
+} taut_bounds;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -357,7 +387,7 @@ extern "C" {
 // The version of the library that runs, in the form of TAUT_VERSION_ID: major << 24 | minor << 16 | patch.
 //
 // Threads: any.
-uint32_t taut_version(void);
+TAUT_API uint32_t taut_version(void);
 
 // Whether a program that was compiled with this header may use the library that it found at run time: call
 // taut_check_version(TAUT_VERSION_ID) first. Before 1.0 the first two numbers must be equal; from then on the first one
@@ -365,36 +395,37 @@ uint32_t taut_version(void);
 //
 // Errors: TAUT_ERROR_VERSION_MISMATCH; taut_version() tells what was found.
 // Threads: any.
-taut_result taut_check_version(uint32_t version_id);
+TAUT_API taut_result taut_check_version(uint32_t version_id);
 
 // The name of a result as it stands in this header ("TAUT_ERROR_GRID_SIZE"), "TAUT_ERROR_UNKNOWN" for a number that is
 // no result. Never NULL; the text lives as long as the library.
 //
 // Threads: any.
-const char *taut_result_name(int32_t result);
+TAUT_API const char *taut_result_name(int32_t result);
 
 // One line in English that says what a result means. Never NULL; the text lives as long as the library.
 //
 // Threads: any.
-const char *taut_result_message(int32_t result);
+TAUT_API const char *taut_result_message(int32_t result);
 
 // The default grid: 32 x 32 particles, 1 m x 1 m, all spring families.
 //
 // Threads: any.
-taut_grid_def taut_grid_def_default(void);
+TAUT_API taut_grid_def taut_grid_def_default(void);
 
 // Memory that a grid needs: never more than TAUT_GRID_BYTES, aligned to TAUT_GRID_ALIGN.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_DEFINITION, TAUT_ERROR_GRID_SIZE,
 // TAUT_ERROR_SIDE_LENGTH, TAUT_ERROR_OUT_OF_RANGE (families).
 // Threads: any.
-taut_result taut_grid_memory(const taut_grid_def *def, taut_memory *out);
+TAUT_API taut_result taut_grid_memory(const taut_grid_def *def, taut_memory *out);
 
 // Makes a grid in the caller's block of block_size bytes. The block is the caller's to keep and to free; there is nothing
 // to destroy.
 //
 // Errors: those of taut_grid_memory, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: any.
+TAUT_API
 taut_result taut_grid_create(const taut_grid_def *def,
                              void *block,
                              size_t block_size,
@@ -404,27 +435,27 @@ taut_result taut_grid_create(const taut_grid_def *def,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: any.
-taut_result taut_grid_counts(const taut_grid *from, taut_counts *out);
+TAUT_API taut_result taut_grid_counts(const taut_grid *from, taut_counts *out);
 
 // 64-bit digest of what a grid was made of: two grids are the same topology when their digests agree. The same on every
 // machine.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: any.
-taut_result taut_grid_digest(const taut_grid *from, uint64_t *out);
+TAUT_API taut_result taut_grid_digest(const taut_grid *from, uint64_t *out);
 
 // The default cloth for a grid: 60 Hz x 16 substeps, 0.2 kg/m^2, hanging from particle 0 in the direction -y. The grid
 // tells how many pins there can be; it may be NULL, which means a grid of 256 particles or more.
 //
 // Threads: any.
-taut_cloth_def taut_cloth_def_default(const taut_grid *on);
+TAUT_API taut_cloth_def taut_cloth_def_default(const taut_grid *on);
 
 // Memory that a cloth needs. For static storage TAUT_CLOTH_BYTES tells the same at compile time.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE (grid), TAUT_ERROR_BAD_DEFINITION,
 // TAUT_ERROR_STEP_SIZE, TAUT_ERROR_DAMPING, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
 // Threads: any.
-taut_result taut_cloth_memory(const taut_grid *on, const taut_cloth_def *def, taut_memory *out);
+TAUT_API taut_result taut_cloth_memory(const taut_grid *on, const taut_cloth_def *def, taut_memory *out);
 
 // Makes a cloth in the caller's block of block_size bytes: flat, at rest, nothing pinned, without stiffness. The content of
 // the block does not matter. The block is the caller's to keep until the cloth is no longer used, and then to free; there
@@ -432,6 +463,7 @@ taut_result taut_cloth_memory(const taut_grid *on, const taut_cloth_def *def, ta
 //
 // Errors: those of taut_cloth_memory, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BLOCK_TOO_SMALL. Then the block is as it was.
 // Threads: any.
+TAUT_API
 taut_result taut_cloth_create(const taut_grid *on,
                               const taut_cloth_def *def,
                               void *block,
@@ -442,7 +474,7 @@ taut_result taut_cloth_create(const taut_grid *on,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth.
-taut_result taut_cloth_reset(taut_cloth *cloth);
+TAUT_API taut_result taut_cloth_reset(taut_cloth *cloth);
 
 // Checks a baked field file of size bytes and tells what it is: so the density is known before the cloth is made.
 //
@@ -450,7 +482,7 @@ taut_result taut_cloth_reset(taut_cloth *cloth);
 // TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM, TAUT_ERROR_NOT_FINITE,
 // TAUT_ERROR_NEGATIVE.
 // Threads: any.
-taut_result taut_field_info(const void *data, size_t size, taut_field *out);
+TAUT_API taut_result taut_field_info(const void *data, size_t size, taut_field *out);
 
 // Sets one stiffness for the whole cloth, in N/m, each at least 0: warp (along v), weft (along u), shear, bend. What the
 // step cannot carry is cut by the budget, with the ratios kept.
@@ -458,6 +490,7 @@ taut_result taut_field_info(const void *data, size_t size, taut_field *out);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
 // TAUT_ERROR_NEGATIVE. Then the former stiffness stays.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_stiffness_uniform(taut_cloth *cloth,
                                              float warp_n_m,
                                              float weft_n_m,
@@ -471,6 +504,7 @@ taut_result taut_cloth_set_stiffness_uniform(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE
 // (channels), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE. Then the former stiffness stays.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_stiffness_field(taut_cloth *cloth,
                                            uint32_t channels,
                                            uint32_t rows,
@@ -497,6 +531,7 @@ taut_result taut_cloth_set_stiffness_field_sanitised(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, and those of taut_field_info. Then the
 // former stiffness stays.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
                                       const void *data,
                                       size_t size,
@@ -506,14 +541,14 @@ taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
-taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
+TAUT_API taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
 
 // Pins a particle where it is. One that is pinned already stays as it is.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_TOO_MANY_PINS.
 // Threads: changes the cloth.
-taut_result taut_cloth_pin(taut_cloth *cloth, uint32_t particle);
+TAUT_API taut_result taut_cloth_pin(taut_cloth *cloth, uint32_t particle);
 
 // Moves a pin: at the end of the next frame it is at world_m (x, y, z in m), and on the way there it is interpolated over
 // the substeps. Without a new call it then stays.
@@ -521,6 +556,7 @@ taut_result taut_cloth_pin(taut_cloth *cloth, uint32_t particle);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_NOT_PINNED, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's origin).
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_pin_move(taut_cloth *cloth,
                                 uint32_t particle,
                                 const double world_m[3]);
@@ -530,13 +566,13 @@ taut_result taut_cloth_pin_move(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_NOT_PINNED.
 // Threads: changes the cloth.
-taut_result taut_cloth_unpin(taut_cloth *cloth, uint32_t particle);
+TAUT_API taut_result taut_cloth_unpin(taut_cloth *cloth, uint32_t particle);
 
 // Number of pins.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out);
+TAUT_API taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out);
 
 // Puts a particle somewhere, at rest; a pinned one together with its pin. local_m is x, y, z in m in the cloth's local
 // frame (the world less origin_m).
@@ -544,7 +580,7 @@ taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m along an axis).
 // Threads: changes the cloth.
-taut_result taut_cloth_set_position(taut_cloth *cloth, uint32_t particle, const float local_m[3]);
+TAUT_API taut_result taut_cloth_set_position(taut_cloth *cloth, uint32_t particle, const float local_m[3]);
 
 // Puts all particles somewhere, at rest, pinned ones together with their pins. local_m holds x, y, z of each of the count
 // particles in m in the cloth's local frame, particle after particle; count is the number of particles of the grid. All or
@@ -553,6 +589,7 @@ taut_result taut_cloth_set_position(taut_cloth *cloth, uint32_t particle, const 
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (count),
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m along an axis).
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_positions(taut_cloth *cloth,
                                      uint32_t count,
                                      const float *local_m);
@@ -562,14 +599,14 @@ taut_result taut_cloth_set_positions(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
 // Threads: changes the cloth.
-taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particle, const float v_m_s[3]);
+TAUT_API taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particle, const float v_m_s[3]);
 
 // Adds a force on a particle, x, y, z in N, which acts during the next frame. Needs TAUT_FEATURE_PULL.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
 // TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 // Threads: changes the cloth.
-taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
+TAUT_API taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
 
 // Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
 // calls give the same bits on every machine, whatever floating-point modes the engine has set.
@@ -578,7 +615,7 @@ taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const flo
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
-taut_result taut_cloth_step(taut_cloth *cloth, uint32_t *out_flags);
+TAUT_API taut_result taut_cloth_step(taut_cloth *cloth, uint32_t *out_flags);
 
 // Steps count frames, 0 or more; pin targets and forces belong to the first. It ends early after a frame that was taken back
 // (TAUT_STEP_NON_FINITE); taut_cloth_step_index tells how far it came.
@@ -587,6 +624,7 @@ taut_result taut_cloth_step(taut_cloth *cloth, uint32_t *out_flags);
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_step_many(taut_cloth *cloth,
                                  uint32_t count,
                                  uint32_t *out_flags);
@@ -595,13 +633,27 @@ taut_result taut_cloth_step_many(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_step_index(const taut_cloth *cloth, uint64_t *out);
+TAUT_API taut_result taut_cloth_step_index(const taut_cloth *cloth, uint64_t *out);
+
+// Steps each of count cloths one frame, in the order of the list: for each of them the same as taut_cloth_step. It starts
+// no threads; to step on many give each a list of its own. A cloth that is named twice is stepped twice. out_flags, which
+// may be NULL, gets the TAUT_STEP_* of each cloth, count of them; it must not overlap the list or a cloth.
+//
+// All or nothing: the whole list is checked before the first cloth is stepped.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE (any cloth), TAUT_ERROR_NO_STIFFNESS (any
+// cloth). Then no cloth was stepped.
+// Threads: changes all cloths of the list.
+TAUT_API
+taut_result taut_cloth_step_all(taut_cloth *const *cloths,
+                                uint32_t count,
+                                uint32_t *out_flags);
 
 // The positions without a copy.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_positions(const taut_cloth *cloth, taut_position_view *out);
+TAUT_API taut_result taut_cloth_positions(const taut_cloth *cloth, taut_position_view *out);
 
 // Copies the world positions in m as three doubles per particle, in the order of the particles. out has out_size bytes;
 // stride is the bytes from a particle to the next, at least 24. Bytes between are left alone, and out need not be aligned.
@@ -609,6 +661,7 @@ taut_result taut_cloth_positions(const taut_cloth *cloth, taut_position_view *ou
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
 // TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: reads the cloth.
+TAUT_API
 taut_result taut_cloth_copy_positions_f64(const taut_cloth *cloth,
                                           void *out,
                                           size_t out_size,
@@ -622,6 +675,7 @@ taut_result taut_cloth_copy_positions_f64(const taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, base_m), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE
 // (base_m), TAUT_ERROR_SHAPE (stride), TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: reads the cloth.
+TAUT_API
 taut_result taut_cloth_copy_positions_f32(const taut_cloth *cloth,
                                           const double base_m[3],
                                           void *out,
@@ -634,6 +688,7 @@ taut_result taut_cloth_copy_positions_f32(const taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
 // TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: reads the cloth.
+TAUT_API
 taut_result taut_cloth_copy_velocities_f32(const taut_cloth *cloth,
                                            void *out,
                                            size_t out_size,
@@ -643,25 +698,84 @@ taut_result taut_cloth_copy_velocities_f32(const taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_strain(const taut_cloth *cloth, taut_strain *out);
+TAUT_API taut_result taut_cloth_strain(const taut_cloth *cloth, taut_strain *out);
 
 // Kinetic energy in J, with the inertia of the inertia field. Takes time in proportion to the particles.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_kinetic_energy(const taut_cloth *cloth, double *out_j);
+TAUT_API taut_result taut_cloth_kinetic_energy(const taut_cloth *cloth, double *out_j);
+
+// Number of triangles of a grid, two in each cell. For static storage TAUT_TRIANGLES tells the same.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: any.
+TAUT_API taut_result taut_grid_triangle_count(const taut_grid *from, uint32_t *out);
+
+// Copies the triangles as three particle indices each, a list without gaps for an index buffer: cell after cell along the
+// rows, each cell cut from its lower left to its upper right corner. Counterclockwise is the front, the side from which u
+// runs to the right and v runs down, as a picture is looked at. out has out_size bytes, of which 12 per triangle are
+// written, and need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (from), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_BLOCK_TOO_SMALL. Then
+// nothing is written.
+// Threads: any.
+TAUT_API
+taut_result taut_grid_copy_triangles_u32(const taut_grid *from,
+                                         void *out,
+                                         size_t out_size);
+
+// The same as 16-bit indices, 6 bytes per triangle, for a grid of at most 65,536 particles.
+//
+// Errors: those of taut_grid_copy_triangles_u32, TAUT_ERROR_OUT_OF_RANGE (more particles). Then nothing is written.
+// Threads: any.
+TAUT_API taut_result taut_grid_copy_triangles_u16(const taut_grid *from, void *out, size_t out_size);
+
+// Copies the texture coordinates as two floats per particle, 0 to 1, in the order of the particles: 0, 0 at particle 0, u
+// along the columns, v along the rows. out has out_size bytes; stride is the bytes from a particle to the next, at least 8.
+// Bytes between are left alone, and out need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (from), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: any.
+TAUT_API
+taut_result taut_grid_copy_uvs_f32(const taut_grid *from,
+                                   void *out,
+                                   size_t out_size,
+                                   size_t stride);
+
+// Copies the unit normals as three floats per particle, in the order of the particles, into a vertex buffer of its own or,
+// with out at the place of the first normal, into one that the positions are in too. A normal is the mean of those of the
+// one to four cells around the particle, weighted by their areas. It points to the front, the side from which u runs to
+// the right and v runs down; 0, 0, 0 where those cells have no area. out has out_size bytes; stride is the bytes from a
+// particle to the next, at least 12. Bytes between are left alone, and out need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: reads the cloth.
+TAUT_API
+taut_result taut_cloth_copy_normals_f32(const taut_cloth *cloth,
+                                        void *out,
+                                        size_t out_size,
+                                        size_t stride);
+
+// The box around all particles, in the world in m, for culling. Takes time in proportion to the particles.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+TAUT_API taut_result taut_cloth_bounds(const taut_cloth *cloth, taut_bounds *out);
 
 // Bytes of a snapshot of the cloth as it is now. It grows with the pins and with pending forces.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_snapshot_size(const taut_cloth *cloth, size_t *out);
+TAUT_API taut_result taut_cloth_snapshot_size(const taut_cloth *cloth, size_t *out);
 
 // Bytes that every snapshot of this cloth fits in, however many pins and forces it will have.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_snapshot_size_max(const taut_cloth *cloth, size_t *out);
+TAUT_API taut_result taut_cloth_snapshot_size_max(const taut_cloth *cloth, size_t *out);
 
 // Writes the state (positions, velocities, pins, pending forces, step index) into out, which has out_size bytes and need not
 // be aligned. Every machine writes and reads the same bytes. Stiffness and definition are left out: they do not change by
@@ -670,6 +784,7 @@ taut_result taut_cloth_snapshot_size_max(const taut_cloth *cloth, size_t *out);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, out_written), TAUT_ERROR_BAD_HANDLE,
 // TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).
+TAUT_API
 taut_result taut_cloth_snapshot(taut_cloth *cloth,
                                 void *out,
                                 size_t out_size,
@@ -682,6 +797,7 @@ taut_result taut_cloth_snapshot(taut_cloth *cloth,
 // TAUT_ERROR_WRONG_KIND, TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_FOREIGN, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM,
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NO_SUCH_PARTICLE. Then the cloth is as it was.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_restore(taut_cloth *cloth,
                                const void *data,
                                size_t size);
@@ -690,7 +806,7 @@ taut_result taut_cloth_restore(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).
-taut_result taut_cloth_state_hash(taut_cloth *cloth, uint64_t *out);
+TAUT_API taut_result taut_cloth_state_hash(taut_cloth *cloth, uint64_t *out);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -146,6 +146,11 @@ impl<'a> Cloth<'a> {
         self.step_index
     }
 
+    /// Whether the stiffness was ever set: without it a cloth does not step.
+    pub fn has_stiffness(&self) -> bool {
+        self.has_stiffness
+    }
+
     /// Mass of a particle in kg.
     pub fn particle_mass_kg(&self) -> f32 {
         self.mass

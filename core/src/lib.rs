@@ -26,6 +26,7 @@
 #![deny(unsafe_code)]
 
 pub mod baked;
+mod bounds;
 mod budget;
 mod cloth;
 mod def;
@@ -39,13 +40,16 @@ mod inertia;
 mod lanes;
 mod layout;
 mod math;
+mod mesh;
 pub mod noise;
+mod normals;
 mod pins;
 mod snapshot;
 mod step;
 mod strain;
 
 pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, TUNED_SHARE};
+pub use bounds::Bounds;
 pub use cloth::{Cloth, PositionView};
 pub use def::{Budget, ClothDef, Features};
 pub use environment::in_default_environment;

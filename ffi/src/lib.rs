@@ -44,6 +44,10 @@ mod particle;
 
 mod step;
 
+mod step_all;
+
 mod read;
+
+mod mesh;
 
 mod rollback;

@@ -137,6 +137,16 @@ pub struct Counts {
     pub springs: u32,
 }
 
+/// A box with sides along the axes, in the world in m.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Bounds {
+    /// Smallest x, y and z in m.
+    pub low_m: [f64; 3],
+    /// Largest x, y and z in m.
+    pub high_m: [f64; 3],
+}
+
 /// What the budget made of the stiffness.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::mem::{offset_of, size_of};
 
-use taut::{Cloth, ClothDef, Error, Features, Grid, GridDef};
+use taut::{ClothDef, Error, Features, Grid, GridDef};
 
 use crate::library::run_c;
 
@@ -78,6 +78,7 @@ fn structures_and_values_are_those_of_rust() {
     );
     structure!(t, types::Memory, "taut_memory", size, align);
     structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
+    structure!(t, types::Bounds, "taut_bounds", low_m, high_m);
     structure!(t, types::BudgetReport, "taut_budget_report", dt_s, max_dt_s, cut_fraction, inertia_added);
     structure!(
         t,
@@ -160,52 +161,4 @@ fn defaults(t: &mut String) {
         equal(&format!("d.u_axis[{i}]"), d.u_axis[i].into());
         equal(&format!("d.v_axis[{i}]"), d.v_axis[i].into());
     }
-}
-
-#[test]
-fn the_macro_for_static_storage_is_the_query() {
-    let mut text = String::from(
-        "#include <stdio.h>\n#include \"taut.h\"\n\
-         static int row(uint32_t m, uint32_t n, uint32_t families, uint32_t features, uint32_t pins, size_t bytes)\n\
-         {\n\
-         \x20   static _Alignas(TAUT_GRID_ALIGN) char block[TAUT_GRID_BYTES];\n\
-         \x20   taut_grid_def g = taut_grid_def_default();\n\
-         \x20   g.rows = m; g.columns = n; g.families = families;\n\
-         \x20   taut_grid *grid;\n\
-         \x20   if (taut_grid_create(&g, block, sizeof block, &grid)) return 1;\n\
-         \x20   taut_cloth_def d = taut_cloth_def_default(grid);\n\
-         \x20   d.features = features; d.max_pins = pins;\n\
-         \x20   taut_memory memory;\n\
-         \x20   if (taut_cloth_memory(grid, &d, &memory)) return 1;\n\
-         \x20   if (memory.align != TAUT_CLOTH_ALIGN || memory.size != bytes ||\n\
-         \x20       TAUT_CLOTH_BYTES(m, n, families, features, pins) != bytes) {\n\
-         \x20       printf(\"%u x %u, %u, %u, %u: %zu, %zu, %zu\\n\", m, n, families, features, pins, memory.size, bytes,\n\
-         \x20              (size_t)TAUT_CLOTH_BYTES(m, n, families, features, pins));\n\
-         \x20       return 1;\n\
-         \x20   }\n\
-         \x20   return 0;\n\
-         }\n\
-         int main(void)\n{\n    int failed = 0;\n",
-    );
-    for (rows, columns) in [(2, 2), (3, 16), (17, 15), (32, 32), (33, 1), (128, 64), (4096, 4096)] {
-        let columns = columns.max(2);
-        for families in [1, 3, 5, 7] {
-            for features in [0, 1] {
-                for max_pins in [0, 1, 3, rows.min(columns)] {
-                    let grid =
-                        Grid::new(&GridDef { rows, columns, families: taut::Families(families), ..GridDef::default() })
-                            .unwrap();
-                    let def = ClothDef { features: Features(features), max_pins, ..ClothDef::default() };
-                    let bytes = 1024 + 4 * Cloth::memory(&grid, &def).unwrap();
-                    writeln!(
-                        text,
-                        "    failed |= row({rows}, {columns}, {families}, {features}, {max_pins}, {bytes}u);"
-                    )
-                    .unwrap();
-                }
-            }
-        }
-    }
-    text.push_str("    return failed;\n}\n");
-    assert_eq!(run_c(&text, &[]), "");
 }

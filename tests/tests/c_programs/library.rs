@@ -1,5 +1,6 @@
 //! Builds the library once and compiles programs against it.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -44,6 +45,8 @@ pub const BOTH: [Linking; 2] = [Linking::Static, Linking::Shared];
 pub enum Language {
     C11,
     Cpp17,
+    /// Without exceptions and run-time type information, as many engines are built.
+    Cpp17Bare,
 }
 
 impl Language {
@@ -51,7 +54,7 @@ impl Language {
     pub fn compilers(self) -> Vec<&'static str> {
         let (default, clang) = match self {
             Language::C11 => ("cc", "clang"),
-            Language::Cpp17 => ("c++", "clang++"),
+            Language::Cpp17 | Language::Cpp17Bare => ("c++", "clang++"),
         };
         let mut all = vec![default];
         if Command::new(clang).arg("--version").output().is_ok() {
@@ -59,20 +62,23 @@ impl Language {
         }
         all
     }
+
+    /// The flags of the language: every warning is an error.
+    pub fn flags(self) -> &'static [&'static str] {
+        match self {
+            Language::C11 => &["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"],
+            Language::Cpp17 => &["-std=c++17", "-Wall", "-Wextra", "-pedantic", "-Werror"],
+            Language::Cpp17Bare => {
+                &["-std=c++17", "-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-pedantic", "-Werror"]
+            }
+        }
+    }
 }
 
-/// Compiles sources to the program `out` with every warning an error.
+/// Compiles sources to the program `out`.
 pub fn compile(compiler: &str, language: Language, sources: &[PathBuf], linking: Linking, out: &Path) {
     let mut command = Command::new(compiler);
-    command
-        .arg(match language {
-            Language::C11 => "-std=c11",
-            Language::Cpp17 => "-std=c++17",
-        })
-        .args(["-O1", "-Wall", "-Wextra", "-pedantic", "-Werror"])
-        .arg("-I")
-        .arg(root().join("include"))
-        .args(sources);
+    command.args(language.flags()).args(["-O1", "-pthread"]).arg("-I").arg(root().join("include")).args(sources);
     match linking {
         Linking::Static => {
             command.arg(library().join("libtaut.a"));
@@ -86,6 +92,20 @@ pub fn compile(compiler: &str, language: Language, sources: &[PathBuf], linking:
     // libtaut needs no other library; libm is for the programs' own use of fenv.h
     command.arg("-lm").arg("-o").arg(out);
     succeed(&mut command);
+}
+
+/// The functions that a header declares.
+pub fn declared(header: &str) -> BTreeSet<String> {
+    std::fs::read_to_string(root().join("include").join(header))
+        .unwrap()
+        .lines()
+        .filter(|l| !l.starts_with(['/', '#', ' ']))
+        .filter_map(|l| {
+            let (before, _) = l.split_once('(')?;
+            let name = before.rsplit([' ', '*']).next()?;
+            name.starts_with("taut_").then(|| name.to_string())
+        })
+        .collect()
 }
 
 /// Writes a C program into a temporary folder, compiles and runs it with the arguments, both ways of linking and all

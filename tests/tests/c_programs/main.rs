@@ -5,8 +5,11 @@
 extern crate taut as taut_core;
 
 mod drape;
+mod examples;
+mod headers;
 mod layout;
 mod library;
+mod memory;
 mod refusals;
 mod sanitizers;
 mod snippet;
