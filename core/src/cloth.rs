@@ -4,6 +4,7 @@ use crate::force::{Planes, Springs};
 use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::math::round16;
 use crate::pins::Pins;
+use crate::width::Supported;
 use crate::{ClothDef, Error, Grid, Vector3, inertia};
 
 /// Farthest that a position may be from the cloth's origin, in m.
@@ -35,6 +36,9 @@ pub struct Cloth<'a> {
     pub(crate) has_pull: bool,
     /// Whether inertia and springs must be computed anew.
     pub(crate) stale: bool,
+    /// What the sweep hands on from row to row: [`Layout::carry`].
+    pub(crate) carry: &'a mut [f32],
+    pub(crate) width: Supported,
 }
 
 /// The positions of a cloth without a copy: particle (row, column) is number `row * row_stride + column` of each of the
@@ -96,6 +100,8 @@ impl<'a> Cloth<'a> {
             has_stiffness: false,
             has_pull: false,
             stale: true,
+            carry: take(b, layout.carry())?,
+            width: Supported::best(),
         };
         cloth.reset();
         Ok(cloth)
