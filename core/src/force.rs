@@ -169,11 +169,25 @@ impl Sweep<'_, '_> {
         };
         // whole vectors: at most the padded width
         let n = l.columns.div_ceil(V::LANES) * V::LANES;
-        for row in 0..l.rows {
-            // SAFETY: `pointers` has checked the lengths. The largest place that is read is that of the bend springs
-            // along v, n numbers from row(row + 2) on, or two numbers beyond n in the rows row and row + 1; the least is
-            // row(1) - 1. The rows of carry are read one number before and beyond n, which is in their spare 16.
-            unsafe { sweep_row::<V, SHEAR, BEND>(zero, &p, &k, row, l.stride, n) }
+        let nothing = Begun { d: Three([zero; 3]), ratio: zero };
+        // SAFETY: `pointers` has checked the lengths. Rows 0 to rows - 1 are begun and swept: the largest place that is
+        // read is that of the bend springs along v, n numbers from row(row + 2) on, or two numbers beyond n in the rows
+        // row and row + 1; the least is row(1) - 1. The rows of carry are read one number before and beyond n, which is
+        // in their spare 16.
+        unsafe {
+            let mut s = Springs6 {
+                right: begin(&k, zero, &p, 0, 1, k.rest_u),
+                below: begin(&k, zero, &p, 0, l.stride, k.rest_v),
+                lower_right: if SHEAR { begin(&k, zero, &p, 0, l.stride + 1, k.rest_diagonal) } else { nothing },
+                lower_left: if SHEAR { begin(&k, zero, &p, 0, l.stride - 1, k.rest_diagonal) } else { nothing },
+                two_right: if BEND { begin(&k, zero, &p, 0, 2, k.bend_u) } else { nothing },
+                two_below: if BEND { begin(&k, zero, &p, 0, 2 * l.stride, k.bend_v) } else { nothing },
+            };
+            for row in 0..l.rows {
+                // after the last row the first vector of it is begun once more, for nobody
+                let next = if row + 1 < l.rows { row + 1 } else { row };
+                sweep_row::<V, SHEAR, BEND>(zero, &p, &k, &mut s, row, next, l.stride, n);
+            }
         }
     }
 }
@@ -285,28 +299,73 @@ unsafe fn load<V: Vector>(zero: V, from: *const f32, at: usize) -> V {
     unsafe { zero.load(from.wrapping_add(at)) }
 }
 
-/// The force of springs on the ends they start at (eq. 1): k (1 - L0/l) d.
-#[inline(always)]
-fn spring<V: Vector>(c: &Constants<V>, here: Three<V>, there: Three<V>, k: V, rest: V) -> Three<V> {
-    let d = there.minus(here);
-    let length = d.squared().max(c.tiny).sqrt();
-    d.times(k * (c.one - rest / length).max(c.floor))
+/// A spring of each lane on its way: the difference of its ends and L0/l.
+///
+/// Square root and division take tens of cycles, in which a processor can work on others only if few instructions wait for
+/// them. So these two are begun a vector of particles ahead, and nothing after them waits in the processor's queues.
+#[derive(Clone, Copy)]
+struct Begun<V> {
+    d: Three<V>,
+    ratio: V,
 }
 
-/// One row of a substep: `n` places, a multiple of the lanes.
+impl<V: Vector> Begun<V> {
+    #[inline(always)]
+    fn new(c: &Constants<V>, here: Three<V>, there: Three<V>, rest: V) -> Begun<V> {
+        let d = there.minus(here);
+        Begun { d, ratio: rest / d.squared().max(c.tiny).sqrt() }
+    }
+
+    /// The force on the end that the spring starts at (eq. 1): k (1 - L0/l) d.
+    #[inline(always)]
+    fn force(self, c: &Constants<V>, k: V) -> Three<V> {
+        self.d.times(k * (c.one - self.ratio).max(c.floor))
+    }
+}
+
+/// The springs that start at each particle of a vector. Those of a family that is off hold nothing of use.
+#[derive(Clone, Copy)]
+struct Springs6<V> {
+    right: Begun<V>,
+    below: Begun<V>,
+    lower_right: Begun<V>,
+    lower_left: Begun<V>,
+    two_right: Begun<V>,
+    two_below: Begun<V>,
+}
+
+/// Begins the springs of one direction at a place: `offset` is where the other ends lie.
 ///
 /// # Safety
 /// The places that [`Sweep::families`] names are inside the planes.
 #[inline(always)]
+unsafe fn begin<V: Vector>(c: &Constants<V>, zero: V, p: &Pointers, at: usize, offset: usize, rest: V) -> Begun<V> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (here, there) = (Three::load(zero, &p.x, at), Three::load(zero, &p.x, at.wrapping_add(offset)));
+        Begun::new(c, here, there, rest)
+    }
+}
+
+/// One row of a substep: `n` places, a multiple of the lanes. `s` holds the springs of the row's first vector, begun, and
+/// then those of the row's at `next`.
+///
+/// # Safety
+/// The places that [`Sweep::families`] names are inside the planes.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
 unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
     zero: V,
     p: &Pointers,
     c: &Constants<V>,
+    s: &mut Springs6<V>,
     row: usize,
+    next_row: usize,
     stride: usize,
     n: usize,
 ) {
     let first = row.wrapping_mul(stride);
+    let next_first = next_row.wrapping_mul(stride);
     // rows of carry: 3 below, 3 lower left, 3 lower right of an even and of an odd row, 3 two below of each
     let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
     let below = p.carried(0, stride);
@@ -318,41 +377,42 @@ unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
     let mut column = 0;
     while column < n {
         let at = first.wrapping_add(column);
-        let down = at.wrapping_add(stride);
+        let ahead = column.wrapping_add(V::LANES);
+        let next = if ahead < n { first.wrapping_add(ahead) } else { next_first };
         // SAFETY: the caller's promise; what is stored is inside the row or in carry's row.
         unsafe {
-            let here = Three::load(zero, &p.x, at);
             let mut f = none;
 
-            let there = Three::load(zero, &p.x, at.wrapping_add(1));
-            let e = spring(c, here, there, load(zero, p.u, at), c.rest_u);
+            let e = s.right.force(c, load(zero, p.u, at));
+            s.right = begin(c, zero, p, next, 1, c.rest_u);
             f = f.plus(e).minus(e.next1(before));
             before = e;
 
-            let e = spring(c, here, Three::load(zero, &p.x, down), load(zero, p.v_down, at), c.rest_v);
+            let e = s.below.force(c, load(zero, p.v_down, at));
+            s.below = begin(c, zero, p, next, stride, c.rest_v);
             f = f.plus(e).minus(Three::load(zero, &below, column));
             e.store(&below, column);
 
             if SHEAR {
-                let there = Three::load(zero, &p.x, down.wrapping_add(1));
-                let e = spring(c, here, there, load(zero, p.right, at), c.rest_diagonal);
+                let e = s.lower_right.force(c, load(zero, p.right, at));
+                s.lower_right = begin(c, zero, p, next, stride.wrapping_add(1), c.rest_diagonal);
                 f = f.plus(e).minus(Three::load(zero, &upper_left, column.wrapping_sub(1)));
                 e.store(&lower_right, column);
 
-                let there = Three::load(zero, &p.x, down.wrapping_sub(1));
-                let e = spring(c, here, there, load(zero, p.left, at), c.rest_diagonal);
+                let e = s.lower_left.force(c, load(zero, p.left, at));
+                s.lower_left = begin(c, zero, p, next, stride.wrapping_sub(1), c.rest_diagonal);
                 f = f.plus(e).minus(Three::load(zero, &lower_left, column.wrapping_add(1)));
                 e.store(&lower_left, column);
             }
             if BEND {
-                let there = Three::load(zero, &p.x, at.wrapping_add(2));
-                let e = spring(c, here, there, load(zero, p.bend_u, at), c.bend_u);
+                let e = s.two_right.force(c, load(zero, p.bend_u, at));
+                s.two_right = begin(c, zero, p, next, 2, c.bend_u);
                 f = f.plus(e).minus(e.next2(bend_before, bend_before2));
                 bend_before2 = bend_before;
                 bend_before = e;
 
-                let there = Three::load(zero, &p.x, down.wrapping_add(stride));
-                let e = spring(c, here, there, load(zero, p.bend_v, at), c.bend_v);
+                let e = s.two_below.force(c, load(zero, p.bend_v, at));
+                s.two_below = begin(c, zero, p, next, stride.wrapping_mul(2), c.bend_v);
                 f = f.plus(e).minus(Three::load(zero, &two_below, column));
                 e.store(&two_below, column);
             }
@@ -372,9 +432,9 @@ unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
                 }
             }
             v.store(&p.v, at);
-            here.plus(v.times(c.dt)).store(&p.x, at);
+            Three::load(zero, &p.x, at).plus(v.times(c.dt)).store(&p.x, at);
         }
-        column = column.wrapping_add(V::LANES);
+        column = ahead;
     }
 }
 
