@@ -175,13 +175,14 @@ impl Sweep<'_, '_> {
         // row and row + 1; the least is row(1) - 1. The rows of carry are read one number before and beyond n, which is
         // in their spare 16.
         unsafe {
+            let here = Three::load(zero, &p.x, 0);
             let mut s = Springs6 {
-                right: begin(&k, zero, &p, 0, 1, k.rest_u),
-                below: begin(&k, zero, &p, 0, l.stride, k.rest_v),
-                lower_right: if SHEAR { begin(&k, zero, &p, 0, l.stride + 1, k.rest_diagonal) } else { nothing },
-                lower_left: if SHEAR { begin(&k, zero, &p, 0, l.stride - 1, k.rest_diagonal) } else { nothing },
-                two_right: if BEND { begin(&k, zero, &p, 0, 2, k.bend_u) } else { nothing },
-                two_below: if BEND { begin(&k, zero, &p, 0, 2 * l.stride, k.bend_v) } else { nothing },
+                right: begin(&k, &p, here, 1, k.rest_u),
+                below: begin(&k, &p, here, l.stride, k.rest_v),
+                lower_right: if SHEAR { begin(&k, &p, here, l.stride + 1, k.rest_diagonal) } else { nothing },
+                lower_left: if SHEAR { begin(&k, &p, here, l.stride - 1, k.rest_diagonal) } else { nothing },
+                two_right: if BEND { begin(&k, &p, here, 2, k.bend_u) } else { nothing },
+                two_below: if BEND { begin(&k, &p, here, 2 * l.stride, k.bend_v) } else { nothing },
             };
             for row in 0..l.rows {
                 // after the last row the first vector of it is begun once more, for nobody
@@ -334,17 +335,14 @@ struct Springs6<V> {
     two_below: Begun<V>,
 }
 
-/// Begins the springs of one direction at a place: `offset` is where the other ends lie.
+/// Begins the springs of one direction, from particles `here` to those from the place `there` on.
 ///
 /// # Safety
 /// The places that [`Sweep::families`] names are inside the planes.
 #[inline(always)]
-unsafe fn begin<V: Vector>(c: &Constants<V>, zero: V, p: &Pointers, at: usize, offset: usize, rest: V) -> Begun<V> {
+unsafe fn begin<V: Vector>(c: &Constants<V>, p: &Pointers, here: Three<V>, there: usize, rest: V) -> Begun<V> {
     // SAFETY: the caller's promise.
-    unsafe {
-        let (here, there) = (Three::load(zero, &p.x, at), Three::load(zero, &p.x, at.wrapping_add(offset)));
-        Begun::new(c, here, there, rest)
-    }
+    Begun::new(c, here, unsafe { Three::load(c.one, &p.x, there) }, rest)
 }
 
 /// One row of a substep: `n` places, a multiple of the lanes. `s` holds the springs of the row's first vector, begun, and
@@ -381,38 +379,39 @@ unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
         let next = if ahead < n { first.wrapping_add(ahead) } else { next_first };
         // SAFETY: the caller's promise; what is stored is inside the row or in carry's row.
         unsafe {
+            let here = Three::load(zero, &p.x, next);
             let mut f = none;
 
             let e = s.right.force(c, load(zero, p.u, at));
-            s.right = begin(c, zero, p, next, 1, c.rest_u);
+            s.right = begin(c, p, here, next.wrapping_add(1), c.rest_u);
             f = f.plus(e).minus(e.next1(before));
             before = e;
 
             let e = s.below.force(c, load(zero, p.v_down, at));
-            s.below = begin(c, zero, p, next, stride, c.rest_v);
+            s.below = begin(c, p, here, next.wrapping_add(stride), c.rest_v);
             f = f.plus(e).minus(Three::load(zero, &below, column));
             e.store(&below, column);
 
             if SHEAR {
                 let e = s.lower_right.force(c, load(zero, p.right, at));
-                s.lower_right = begin(c, zero, p, next, stride.wrapping_add(1), c.rest_diagonal);
+                s.lower_right = begin(c, p, here, next.wrapping_add(stride.wrapping_add(1)), c.rest_diagonal);
                 f = f.plus(e).minus(Three::load(zero, &upper_left, column.wrapping_sub(1)));
                 e.store(&lower_right, column);
 
                 let e = s.lower_left.force(c, load(zero, p.left, at));
-                s.lower_left = begin(c, zero, p, next, stride.wrapping_sub(1), c.rest_diagonal);
+                s.lower_left = begin(c, p, here, next.wrapping_add(stride.wrapping_sub(1)), c.rest_diagonal);
                 f = f.plus(e).minus(Three::load(zero, &lower_left, column.wrapping_add(1)));
                 e.store(&lower_left, column);
             }
             if BEND {
                 let e = s.two_right.force(c, load(zero, p.bend_u, at));
-                s.two_right = begin(c, zero, p, next, 2, c.bend_u);
+                s.two_right = begin(c, p, here, next.wrapping_add(2), c.bend_u);
                 f = f.plus(e).minus(e.next2(bend_before, bend_before2));
                 bend_before2 = bend_before;
                 bend_before = e;
 
                 let e = s.two_below.force(c, load(zero, p.bend_v, at));
-                s.two_below = begin(c, zero, p, next, stride.wrapping_mul(2), c.bend_v);
+                s.two_below = begin(c, p, here, next.wrapping_add(stride.wrapping_mul(2)), c.bend_v);
                 f = f.plus(e).minus(Three::load(zero, &two_below, column));
                 e.store(&two_below, column);
             }

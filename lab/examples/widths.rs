@@ -6,6 +6,9 @@
 use taut::{Cloth, ClothDef, Families, Grid, GridDef, Width};
 use taut_lab::bound::Throughput;
 
+/// Time of a cell of the table.
+const RUN_MS: u128 = 700;
+
 /// An empty block that begins on a cache line, for which `memory` has room.
 fn aligned(memory: &mut Vec<f32>, numbers: usize) -> &mut [f32] {
     memory.resize(numbers + 16, 0.0);
@@ -25,13 +28,12 @@ fn measure(side: u32, families: Families, width: Width) -> (f64, f64) {
     cloth.pin(0).expect("a pin");
     cloth.pin(side as usize - 1).expect("a pin");
     let steps = f64::from(side * side * def.substeps);
-    let mut times: Vec<f64> = (0..(200_000 / (side * side)).clamp(30, 300))
-        .map(|_| {
-            let start = cpu_time::ThreadTime::now();
-            cloth.step().expect("a stiffness was set");
-            start.elapsed().as_nanos() as f64 / steps
-        })
-        .collect();
+    let (begun, mut times) = (std::time::Instant::now(), Vec::new());
+    while begun.elapsed().as_millis() < RUN_MS {
+        let start = cpu_time::ThreadTime::now();
+        cloth.step().expect("a stiffness was set");
+        times.push(start.elapsed().as_nanos() as f64 / steps);
+    }
     times.sort_by(f64::total_cmp);
     (times[0], times[times.len() / 4])
 }
