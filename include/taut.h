@@ -47,11 +47,12 @@
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
-                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))))
+                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) + 18 * TAUT_CLOTH_STRIDE_(columns)))
 
 // Parts of TAUT_CLOTH_BYTES.
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
-#define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
+#define TAUT_CLOTH_STRIDE_(columns) (TAUT_ROUND_16_(columns) + 16)
+#define TAUT_CLOTH_PLANE_(rows, columns) (TAUT_CLOTH_STRIDE_(columns) * ((size_t)(rows) + 4) + 32)
 #define TAUT_CLOTH_PLANES_(families, features)                                                               \
     ((size_t)17 + (((families) & TAUT_FAMILY_SHEAR) ? 3 : 0) + (((families) & TAUT_FAMILY_BEND) ? 3 : 0) +   \
      (((features) & TAUT_FEATURE_PULL) ? 3 : 0))
@@ -158,6 +159,8 @@ enum taut_result
     TAUT_ERROR_DAMPING = -22,
     // The program was compiled with the header of another version.
     TAUT_ERROR_VERSION_MISMATCH = -23,
+    // This machine lacks the vector width.
+    TAUT_ERROR_UNSUPPORTED_WIDTH = -24,
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,

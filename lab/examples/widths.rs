@@ -40,7 +40,9 @@ fn measure(side: u32, families: Families, width: Width) -> (f64, f64) {
 
 fn main() {
     const SIDES: [u32; 5] = [16, 32, 64, 128, 256];
-    println!("ns per particle-step (lower quartile of the runs), two pins, gravity, damping, limits, a field of springs");
+    println!(
+        "ns per particle-step (lower quartile of the runs), two pins, gravity, damping, limits, a field of springs"
+    );
     println!("| width | bound gather | bound once | families | {} |", SIDES.map(|n| format!("N = {n}")).join(" | "));
     println!("|---|---|---|---|{}", "---|".repeat(SIDES.len()));
     for width in Width::ALL.into_iter().filter(|w| w.is_supported()) {

@@ -101,7 +101,13 @@ fn each_operation_has_the_bits_of_the_scalar_one() {
         for (operation, f) in scalar.iter().enumerate() {
             for i in 0..a.len() {
                 let (is, should) = (results[operation][i], f(a[i], b[i]));
-                assert!(same(is, should), "{:?} {operation}: {:e} {:e}: {is:e}, not {should:e}", width.get(), a[i], b[i]);
+                assert!(
+                    same(is, should),
+                    "{:?} {operation}: {:e} {:e}: {is:e}, not {should:e}",
+                    width.get(),
+                    a[i],
+                    b[i]
+                );
             }
         }
         let lanes = width.get().lanes();
