@@ -180,6 +180,8 @@ enum taut_result
     TAUT_ERROR_DAMPING = -22,
     // The program was compiled with the header of another version.
     TAUT_ERROR_VERSION_MISMATCH = -23,
+    // This machine lacks the vector width.
+    TAUT_ERROR_UNSUPPORTED_WIDTH = -24,
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,

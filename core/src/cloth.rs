@@ -5,6 +5,7 @@ use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::math::round16;
 use crate::pins::Pins;
 use crate::{ClothDef, Error, Grid, Vector3, in_default_environment, inertia};
+use crate::width::Supported;
 
 /// Farthest that a position may be from the cloth's origin, in m.
 pub(crate) const REACH_M: f64 = 1e6;
@@ -35,6 +36,9 @@ pub struct Cloth<'a> {
     pub(crate) has_pull: bool,
     /// Whether inertia and springs must be computed anew.
     pub(crate) stale: bool,
+    /// What the sweep hands on from row to row: [`Layout::carry`].
+    pub(crate) carry: &'a mut [f32],
+    pub(crate) width: Supported,
 }
 
 /// The positions of a cloth without a copy: particle (row, column) is number `row * row_stride + column` of each of the
@@ -100,6 +104,8 @@ impl<'a> Cloth<'a> {
             has_stiffness: false,
             has_pull: false,
             stale: true,
+            carry: take(b, layout.carry())?,
+            width: Supported::best(),
         };
         cloth.start_again();
         Ok(cloth)

@@ -1,10 +1,21 @@
-//! The spring forces (eq. 1) and the velocity half of the substep (eq. 17), row by row.
+//! The substep (eq. 17): spring forces (eq. 1), velocities and positions in one pass over the rows, each spring once.
 //!
-//! Each particle gathers its twelve springs in one fixed order, so that no sum depends on how the work is split. The loop
-//! is plain arithmetic over rows, which the compiler turns into vectors of any width with the same bits.
+//! The twelve springs of a particle are summed in one fixed order, so that no sum depends on how the work is split: right,
+//! left, below, above, the diagonals (lower right, upper left, lower left, upper right), two to the right, left, below,
+//! above, from +0 on. Six of them start at the particle. The forces of the others were computed at their other ends, and
+//! are taken off instead of added, from the vector before or from the rows that the row above handed on (`carry`).
+//!
+//! Those are the bits of a gather that computes all twelve: x_a - x_b is exactly -(x_b - x_a) or both are +0, the squares
+//! and so the factor are the same, and a - f is a + (-f). Where a force is a zero its sign may differ; but a sum that
+//! starts at +0 is never -0 (only -0 + -0 is), so adding a zero of any sign changes nothing. Beyond the border no force
+//! was computed and 0 is taken off, where the gather adds a spring of stiffness 0. That holds for finite numbers; others
+//! stay what they are until the end of the frame, which is then taken back whole.
+//!
+//! A particle's position is moved at once: the springs that start later in the pass end at particles that come later.
+#![allow(unsafe_code)] // pointers into planes whose lengths are checked once a sweep: see `Sweep::run`
 
-use crate::lanes::{LANES, Lanes};
-use crate::layout::{Layout, span};
+use crate::layout::{CARRY_ROWS, Layout, span};
+use crate::simd::{Pass, Vector};
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
 const TINY: f32 = 1e-30;
@@ -59,136 +70,398 @@ impl Planes<'_> {
     }
 }
 
-/// A row of three planes.
-type Row<'a> = (&'a [[f32; LANES]], &'a [[f32; LANES]], &'a [[f32; LANES]]);
+/// One substep over all particles.
+pub(crate) struct Sweep<'a, 'b> {
+    pub layout: Layout,
+    pub constants: &'a Substep,
+    pub x: &'a mut Planes<'b>,
+    pub v: &'a mut Planes<'b>,
+    pub springs: &'a Springs<'b>,
+    /// 1/M, 0 for pinned particles and spare places.
+    pub inverse: &'a [f32],
+    /// Forces on the particles.
+    pub pull: Option<[&'a [f32]; 3]>,
+    /// Scratch, [`Layout::carry`].
+    pub carry: &'a mut [f32],
+}
 
-/// v += a dt for the particles of one row, with a = (sum of springs + weight + pull) / M - c v, then the speed limit.
-///
-/// `inverse` is 1/M, 0 for pinned particles and spare places.
-#[inline(never)]
-#[allow(clippy::too_many_arguments)] // each array is a parameter of its own: so the compiler knows that they do not overlap
-pub(crate) fn velocity_row<const SHEAR: bool, const BEND: bool, const PULL: bool>(
-    l: &Layout,
-    row: usize,
-    c: &Substep,
-    p: View<'_>,
-    k: &Springs<'_>,
-    inverse: &[f32],
-    pull: [&[f32]; 3],
-    vx: &mut [f32],
-    vy: &mut [f32],
-    vz: &mut [f32],
-) {
-    let (at, n, s) = (l.row(row), l.width, l.stride);
-    // Every row below has exactly n / LANES blocks, or the function ends here; so no index of the loop can be out of range.
-    macro_rules! row {
-        ($plane:expr, $at:expr) => {{
-            let r = span($plane, $at, n).as_chunks::<LANES>().0;
-            if r.len() != n / LANES {
-                return;
-            }
-            r
-        }};
-    }
-    macro_rules! row3 {
-        ($at:expr) => {{
-            let r: Row<'_> = (row!(p.x, $at), row!(p.y, $at), row!(p.z, $at));
-            r
-        }};
-    }
-    macro_rules! row_if {
-        ($on:expr, $plane:expr, $at:expr) => {
-            if $on { row!($plane, $at) } else { row!(inverse, at) }
-        };
-    }
-    let here = row3!(at);
-    let (r1, l1, d1, u1) = (row3!(at + 1), row3!(at - 1), row3!(at + s), row3!(at - s));
-    let (dr, dl, ur, ul) = (row3!(at + s + 1), row3!(at + s - 1), row3!(at - s + 1), row3!(at - s - 1));
-    let (r2, l2, d2, u2) = (row3!(at + 2), row3!(at - 2), row3!(at + 2 * s), row3!(at - 2 * s));
-    let (k_r1, k_l1) = (row!(k.u, at), row!(k.u, at - 1));
-    let (k_d1, k_u1) = (row!(k.v, at), row!(k.v, at - s));
-    let (k_dr, k_ul) = (row_if!(SHEAR, k.right, at), row_if!(SHEAR, k.right, at - s - 1));
-    let (k_dl, k_ur) = (row_if!(SHEAR, k.left, at), row_if!(SHEAR, k.left, at - s + 1));
-    let (k_r2, k_l2) = (row_if!(BEND, k.bend_u, at), row_if!(BEND, k.bend_u, at - 2));
-    let (k_d2, k_u2) = (row_if!(BEND, k.bend_v, at), row_if!(BEND, k.bend_v, at - 2 * s));
-    let (px, py, pz) = (row_if!(PULL, pull[0], at), row_if!(PULL, pull[1], at), row_if!(PULL, pull[2], at));
-    let w = row!(inverse, at);
-    macro_rules! row_mut {
-        ($plane:expr) => {
-            match $plane.get_mut(at..at.wrapping_add(n)) {
-                Some(r) => {
-                    let r = r.as_chunks_mut::<LANES>().0;
-                    if r.len() != n / LANES {
-                        return;
-                    }
-                    r
-                }
-                None => return,
-            }
-        };
-    }
-    let (vx, vy, vz) = (row_mut!(vx), row_mut!(vy), row_mut!(vz));
-    let all = Lanes::all;
-    let (rest_u, rest_v, rest_diagonal) = (all(c.rest_u), all(c.rest_v), all(c.rest_diagonal));
-    let (bend_u, bend_v) = (all(2.0 * c.rest_u), all(2.0 * c.rest_v));
-    let (dt, damping, floor, tiny, one) = (all(c.dt), all(c.damping), all(c.floor), all(TINY), all(1.0));
-    let weight = c.weight.map(all);
-    let (limited, speed, speed2) = (c.speed < f32::INFINITY, all(c.speed), all(c.speed * c.speed));
-    for i in 0..n / LANES {
-        let load = |r: &[[f32; LANES]]| Lanes(r[i]);
-        let (x, y, z) = (load(here.0), load(here.1), load(here.2));
-        let zero = all(0.0);
-        let (mut fx, mut fy, mut fz) = (zero, zero, zero);
-        macro_rules! spring {
-            ($other:expr, $k:expr, $rest:expr) => {{
-                let (dx, dy, dz) = (load($other.0) - x, load($other.1) - y, load($other.2) - z);
-                let length = (dx * dx + dy * dy + dz * dz).max(tiny).sqrt();
-                let factor = load($k) * (one - $rest.over(length)).max(floor);
-                fx = fx + factor * dx;
-                fy = fy + factor * dy;
-                fz = fz + factor * dz;
-            }};
-        }
-        spring!(r1, k_r1, rest_u);
-        spring!(l1, k_l1, rest_u);
-        spring!(d1, k_d1, rest_v);
-        spring!(u1, k_u1, rest_v);
-        if SHEAR {
-            spring!(dr, k_dr, rest_diagonal);
-            spring!(ul, k_ul, rest_diagonal);
-            spring!(dl, k_dl, rest_diagonal);
-            spring!(ur, k_ur, rest_diagonal);
-        }
-        if BEND {
-            spring!(r2, k_r2, bend_u);
-            spring!(l2, k_l2, bend_u);
-            spring!(d2, k_d2, bend_v);
-            spring!(u2, k_u2, bend_v);
-        }
-        (fx, fy, fz) = (fx + weight[0], fy + weight[1], fz + weight[2]);
-        if PULL {
-            (fx, fy, fz) = (fx + load(px), fy + load(py), fz + load(pz));
-        }
-        let (ux, uy, uz, w) = (Lanes(vx[i]), Lanes(vy[i]), Lanes(vz[i]), load(w));
-        let mut sx = ux + (w * fx - damping * ux) * dt;
-        let mut sy = uy + (w * fy - damping * uy) * dt;
-        let mut sz = uz + (w * fz - damping * uz) * dt;
-        if limited {
-            // sqrt(a^2) = a exactly, so the factor is exactly 1 below the limit
-            let scale = speed.over((sx * sx + sy * sy + sz * sz).max(speed2).sqrt());
-            (sx, sy, sz) = (sx * scale, sy * scale, sz * scale);
-        }
-        (vx[i], vy[i], vz[i]) = (sx.0, sy.0, sz.0);
+/// Where the numbers of a sweep lie, column 0 of row 0 of each plane.
+struct Pointers {
+    x: [*mut f32; 3],
+    v: [*mut f32; 3],
+    u: *const f32,
+    v_down: *const f32,
+    right: *const f32,
+    left: *const f32,
+    bend_u: *const f32,
+    bend_v: *const f32,
+    inverse: *const f32,
+    pull: Option<[*const f32; 3]>,
+    carry: *mut f32,
+}
+
+impl Pointers {
+    /// Column 0 of three rows of carry.
+    #[inline(always)]
+    fn carried(&self, row: usize, stride: usize) -> [*mut f32; 3] {
+        let first = self.carry.wrapping_add(row.wrapping_mul(stride).wrapping_add(16));
+        [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
     }
 }
 
-/// x += v dt for the particles of one row.
-pub(crate) fn position_row(l: &Layout, row: usize, dt: f32, x: &mut [f32], v: &[f32]) {
-    let at = l.row(row);
-    let Some(x) = x.get_mut(at..at + l.width) else {
-        return;
-    };
-    for (x, v) in x.iter_mut().zip(span(v, at, l.width)) {
-        *x += v * dt;
+impl Sweep<'_, '_> {
+    /// None where a plane is too short. A plane holds `row(rows + 2)` numbers and 16 more than a row: see [`Layout`].
+    fn pointers(&mut self) -> Option<Pointers> {
+        let l = &self.layout;
+        let first = l.row(0);
+        let read = |plane: &[f32], on: bool| match plane.get(first..l.plane) {
+            Some(from) => Some(from.as_ptr()),
+            None if on => None,
+            None => Some(core::ptr::null()),
+        };
+        let write = |plane: &mut [f32]| plane.get_mut(first..l.plane).map(|from| from.as_mut_ptr());
+        let k = self.springs;
+        let fits = first.checked_add((l.rows + 2) * l.stride)? <= l.plane && l.width + 16 <= l.stride;
+        if !fits || self.carry.len() < CARRY_ROWS * l.stride {
+            return None;
+        }
+        Some(Pointers {
+            x: [write(self.x.x)?, write(self.x.y)?, write(self.x.z)?],
+            v: [write(self.v.x)?, write(self.v.y)?, write(self.v.z)?],
+            u: read(k.u, true)?,
+            v_down: read(k.v, true)?,
+            right: read(k.right, l.shear)?,
+            left: read(k.left, l.shear)?,
+            bend_u: read(k.bend_u, l.bend)?,
+            bend_v: read(k.bend_v, l.bend)?,
+            inverse: read(self.inverse, true)?,
+            pull: match self.pull {
+                Some([x, y, z]) => Some([read(x, true)?, read(y, true)?, read(z, true)?]),
+                None => None,
+            },
+            carry: self.carry.as_mut_ptr(),
+        })
+    }
+
+    /// The substep with the families as they are.
+    #[inline(always)]
+    fn families<V: Vector, const SHEAR: bool, const BEND: bool>(mut self, zero: V) {
+        self.carry.fill(0.0);
+        let Some(p) = self.pointers() else {
+            return;
+        };
+        let (l, c) = (self.layout, self.constants);
+        let k = Constants {
+            rest_u: zero.all(c.rest_u),
+            rest_v: zero.all(c.rest_v),
+            rest_diagonal: zero.all(c.rest_diagonal),
+            bend_u: zero.all(2.0 * c.rest_u),
+            bend_v: zero.all(2.0 * c.rest_v),
+            floor: zero.all(c.floor),
+            tiny: zero.all(TINY),
+            one: zero.all(1.0),
+            damping: zero.all(c.damping),
+            dt: zero.all(c.dt),
+            weight: Three([zero.all(c.weight[0]), zero.all(c.weight[1]), zero.all(c.weight[2])]),
+            limited: c.speed < f32::INFINITY,
+            speed: zero.all(c.speed),
+            speed2: zero.all(c.speed * c.speed),
+        };
+        // whole vectors: at most the padded width
+        let n = l.columns.div_ceil(V::LANES) * V::LANES;
+        let nothing = Begun { d: Three([zero; 3]), ratio: zero };
+        // SAFETY: `pointers` has checked the lengths. Rows 0 to rows - 1 are begun and swept: the largest place that is
+        // read is that of the bend springs along v, n numbers from row(row + 2) on, or two numbers beyond n in the rows
+        // row and row + 1; the least is row(1) - 1. The rows of carry are read one number before and beyond n, which is
+        // in their spare 16.
+        unsafe {
+            let here = Three::load(zero, &p.x, 0);
+            let mut s = Springs6 {
+                right: begin(&k, &p, here, 1, k.rest_u),
+                below: begin(&k, &p, here, l.stride, k.rest_v),
+                lower_right: if SHEAR { begin(&k, &p, here, l.stride + 1, k.rest_diagonal) } else { nothing },
+                lower_left: if SHEAR { begin(&k, &p, here, l.stride - 1, k.rest_diagonal) } else { nothing },
+                two_right: if BEND { begin(&k, &p, here, 2, k.bend_u) } else { nothing },
+                two_below: if BEND { begin(&k, &p, here, 2 * l.stride, k.bend_v) } else { nothing },
+            };
+            for row in 0..l.rows {
+                // after the last row the first vector of it is begun once more, for nobody
+                let next = if row + 1 < l.rows { row + 1 } else { row };
+                sweep_row::<V, SHEAR, BEND>(zero, &p, &k, &mut s, row, next, l.stride, n);
+            }
+        }
+    }
+}
+
+impl Pass for Sweep<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) {
+        match (self.layout.shear, self.layout.bend) {
+            (false, false) => self.families::<V, false, false>(zero),
+            (false, true) => self.families::<V, false, true>(zero),
+            (true, false) => self.families::<V, true, false>(zero),
+            (true, true) => self.families::<V, true, true>(zero),
+        }
+    }
+}
+
+/// [`Substep`] in every lane.
+struct Constants<V> {
+    rest_u: V,
+    rest_v: V,
+    rest_diagonal: V,
+    bend_u: V,
+    bend_v: V,
+    floor: V,
+    tiny: V,
+    one: V,
+    damping: V,
+    dt: V,
+    weight: Three<V>,
+    limited: bool,
+    speed: V,
+    speed2: V,
+}
+
+/// Three coordinates. Plain functions instead of closures and `map`: only what is always inlined is compiled with the
+/// instructions of the width.
+#[derive(Clone, Copy)]
+struct Three<V>([V; 3]);
+
+impl<V: Vector> Three<V> {
+    /// # Safety
+    /// Each plane has the lanes from `at` on.
+    #[inline(always)]
+    unsafe fn load(zero: V, from: &[*mut f32; 3], at: usize) -> Three<V> {
+        let [x, y, z] = *from;
+        // SAFETY: the caller's promise.
+        unsafe { Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]) }
+    }
+
+    /// # Safety
+    /// Each plane has the lanes from `at` on.
+    #[inline(always)]
+    unsafe fn store(self, to: &[*mut f32; 3], at: usize) {
+        let (Three([x, y, z]), to) = (self, *to);
+        // SAFETY: the caller's promise.
+        unsafe {
+            x.store(to[0].wrapping_add(at));
+            y.store(to[1].wrapping_add(at));
+            z.store(to[2].wrapping_add(at));
+        }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[0] + b[0], a[1] + b[1], a[2] + b[2]])
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
+    }
+
+    #[inline(always)]
+    fn times(self, factor: V) -> Three<V> {
+        let a = self.0;
+        Three([a[0] * factor, a[1] * factor, a[2] * factor])
+    }
+
+    #[inline(always)]
+    fn squared(self) -> V {
+        let [x, y, z] = self.0;
+        x * x + y * y + z * z
+    }
+
+    /// [`Vector::next1`] of each.
+    #[inline(always)]
+    fn next1(self, before: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, before.0);
+        Three([a[0].next1(b[0]), a[1].next1(b[1]), a[2].next1(b[2])])
+    }
+
+    /// [`Vector::next2`] of each.
+    #[inline(always)]
+    fn next2(self, before: Three<V>, before2: Three<V>) -> Three<V> {
+        let (a, b, c) = (self.0, before.0, before2.0);
+        Three([a[0].next2(b[0], c[0]), a[1].next2(b[1], c[1]), a[2].next2(b[2], c[2])])
+    }
+}
+
+/// # Safety
+/// There are the lanes from `at` on.
+#[inline(always)]
+unsafe fn load<V: Vector>(zero: V, from: *const f32, at: usize) -> V {
+    // SAFETY: the caller's promise.
+    unsafe { zero.load(from.wrapping_add(at)) }
+}
+
+/// A spring of each lane on its way: the difference of its ends and L0/l.
+///
+/// Square root and division take tens of cycles, in which a processor can work on others only if few instructions wait for
+/// them. So these two are begun a vector of particles ahead, and nothing after them waits in the processor's queues.
+#[derive(Clone, Copy)]
+struct Begun<V> {
+    d: Three<V>,
+    ratio: V,
+}
+
+impl<V: Vector> Begun<V> {
+    #[inline(always)]
+    fn new(c: &Constants<V>, here: Three<V>, there: Three<V>, rest: V) -> Begun<V> {
+        let d = there.minus(here);
+        Begun { d, ratio: rest / d.squared().max(c.tiny).sqrt() }
+    }
+
+    /// The force on the end that the spring starts at (eq. 1): k (1 - L0/l) d.
+    #[inline(always)]
+    fn force(self, c: &Constants<V>, k: V) -> Three<V> {
+        self.d.times(k * (c.one - self.ratio).max(c.floor))
+    }
+}
+
+/// The springs that start at each particle of a vector. Those of a family that is off hold nothing of use.
+#[derive(Clone, Copy)]
+struct Springs6<V> {
+    right: Begun<V>,
+    below: Begun<V>,
+    lower_right: Begun<V>,
+    lower_left: Begun<V>,
+    two_right: Begun<V>,
+    two_below: Begun<V>,
+}
+
+/// Begins the springs of one direction, from particles `here` to those from the place `there` on.
+///
+/// # Safety
+/// The places that [`Sweep::families`] names are inside the planes.
+#[inline(always)]
+unsafe fn begin<V: Vector>(c: &Constants<V>, p: &Pointers, here: Three<V>, there: usize, rest: V) -> Begun<V> {
+    // SAFETY: the caller's promise.
+    Begun::new(c, here, unsafe { Three::load(c.one, &p.x, there) }, rest)
+}
+
+/// One row of a substep: `n` places, a multiple of the lanes. `s` holds the springs of the row's first vector, begun, and
+/// then those of the row's at `next`.
+///
+/// # Safety
+/// The places that [`Sweep::families`] names are inside the planes.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
+    zero: V,
+    p: &Pointers,
+    c: &Constants<V>,
+    s: &mut Springs6<V>,
+    row: usize,
+    next_row: usize,
+    stride: usize,
+    n: usize,
+) {
+    let first = row.wrapping_mul(stride);
+    let next_first = next_row.wrapping_mul(stride);
+    // rows of carry: 3 below, 3 lower left, 3 lower right of an even and of an odd row, 3 two below of each
+    let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
+    let below = p.carried(0, stride);
+    let lower_left = p.carried(3, stride);
+    let (lower_right, upper_left) = (p.carried(6 + this, stride), p.carried(6 + other, stride));
+    let two_below = p.carried(12 + this, stride);
+    let none = Three([zero; 3]);
+    let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
+    let mut column = 0;
+    while column < n {
+        let at = first.wrapping_add(column);
+        let ahead = column.wrapping_add(V::LANES);
+        let next = if ahead < n { first.wrapping_add(ahead) } else { next_first };
+        // SAFETY: the caller's promise; what is stored is inside the row or in carry's row.
+        unsafe {
+            let here = Three::load(zero, &p.x, next);
+            let mut f = none;
+
+            let e = s.right.force(c, load(zero, p.u, at));
+            s.right = begin(c, p, here, next.wrapping_add(1), c.rest_u);
+            f = f.plus(e).minus(e.next1(before));
+            before = e;
+
+            let e = s.below.force(c, load(zero, p.v_down, at));
+            s.below = begin(c, p, here, next.wrapping_add(stride), c.rest_v);
+            f = f.plus(e).minus(Three::load(zero, &below, column));
+            e.store(&below, column);
+
+            if SHEAR {
+                let e = s.lower_right.force(c, load(zero, p.right, at));
+                s.lower_right = begin(c, p, here, next.wrapping_add(stride.wrapping_add(1)), c.rest_diagonal);
+                f = f.plus(e).minus(Three::load(zero, &upper_left, column.wrapping_sub(1)));
+                e.store(&lower_right, column);
+
+                let e = s.lower_left.force(c, load(zero, p.left, at));
+                s.lower_left = begin(c, p, here, next.wrapping_add(stride.wrapping_sub(1)), c.rest_diagonal);
+                f = f.plus(e).minus(Three::load(zero, &lower_left, column.wrapping_add(1)));
+                e.store(&lower_left, column);
+            }
+            if BEND {
+                let e = s.two_right.force(c, load(zero, p.bend_u, at));
+                s.two_right = begin(c, p, here, next.wrapping_add(2), c.bend_u);
+                f = f.plus(e).minus(e.next2(bend_before, bend_before2));
+                bend_before2 = bend_before;
+                bend_before = e;
+
+                let e = s.two_below.force(c, load(zero, p.bend_v, at));
+                s.two_below = begin(c, p, here, next.wrapping_add(stride.wrapping_mul(2)), c.bend_v);
+                f = f.plus(e).minus(Three::load(zero, &two_below, column));
+                e.store(&two_below, column);
+            }
+            f = f.plus(c.weight);
+            if let Some([x, y, z]) = p.pull {
+                f = f.plus(Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]));
+            }
+            // v += a dt with a = f / M - c v, then the speed limit, then x += v dt
+            let w = load(zero, p.inverse, at);
+            let v = Three::load(zero, &p.v, at);
+            let mut v = v.plus(f.times(w).minus(v.times(c.damping)).times(c.dt));
+            if c.limited {
+                let squared = v.squared();
+                // Below the limit the factor is 1: sqrt(a^2) is a where a^2 is a normal number, as a limit's always is.
+                if squared.any_above(c.speed2) {
+                    v = v.times(c.speed / squared.max(c.speed2).sqrt());
+                }
+            }
+            v.store(&p.v, at);
+            Three::load(zero, &p.x, at).plus(v.times(c.dt)).store(&p.x, at);
+        }
+        column = ahead;
+    }
+}
+
+/// Whether every number of the rows of some planes is finite: x * 0 is 0 for finite x and NaN otherwise.
+pub(crate) struct Finite<'a> {
+    pub layout: Layout,
+    pub planes: [&'a [f32]; 6],
+}
+
+impl Pass for Finite<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) -> bool {
+        let l = self.layout;
+        let mut sum = zero;
+        for row in 0..l.rows {
+            for plane in self.planes {
+                // the spare places are zeros
+                for block in span(plane, l.row(row), l.width).as_chunks::<16>().0 {
+                    for at in (0..16).step_by(V::LANES) {
+                        sum = sum + zero.read(block, at) * zero;
+                    }
+                }
+            }
+        }
+        let mut lanes = [0.0f32; 16];
+        sum.write(&mut lanes, 0);
+        lanes.iter().all(|x| *x == 0.0)
     }
 }

@@ -3,6 +3,9 @@ use crate::{ClothDef, Error, Features, Grid, math::round16};
 /// Numbers of a pin: index, from (3), to (3).
 pub(crate) const PIN_NUMBERS: usize = 7;
 
+/// Rows that the sweep hands on, whatever families there are.
+pub(crate) const CARRY_ROWS: usize = 18;
+
 /// Where things lie in the block. Every per-particle array is a plane of padded rows: `stride` numbers a row, two spare
 /// rows above and below, at least 16 spare numbers between rows, so that a vector may read past any border. Spare
 /// places hold zeros and have no mass; a spring to a spare place has stiffness 0.
@@ -52,7 +55,13 @@ impl Layout {
     pub fn numbers(&self) -> usize {
         // positions 3, velocities 3, the last good state 6, 1/M 1
         let planes = 13 + self.channels() + self.spring_planes() + if self.pull { 3 } else { 0 };
-        planes * self.plane + round16(PIN_NUMBERS * self.max_pins)
+        planes * self.plane + round16(PIN_NUMBERS * self.max_pins) + self.carry()
+    }
+
+    /// Numbers of the rows of spring forces that the sweep hands on ([`crate::force`]): 3 of the springs along v, 9 of the
+    /// diagonals, 6 of the bend springs along v.
+    pub fn carry(&self) -> usize {
+        self.stride * CARRY_ROWS
     }
 
     /// Place of column 0 of a row in a plane.

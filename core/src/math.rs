@@ -5,7 +5,7 @@
 /// On x86_64 this is the SSE2 instruction, written so that LLVM can vectorise it (a call into libm cannot be);
 /// elsewhere libm, which is correctly rounded too.
 #[inline(always)]
-#[allow(unsafe_code)] // here and in environment.rs only
+#[allow(unsafe_code)]
 pub fn sqrt(x: f32) -> f32 {
     #[cfg(target_arch = "x86_64")]
     {
@@ -16,22 +16,6 @@ pub fn sqrt(x: f32) -> f32 {
     #[cfg(not(target_arch = "x86_64"))]
     {
         libm::sqrtf(x)
-    }
-}
-
-/// Four square roots, with the bits of [`sqrt`].
-#[inline(always)]
-#[allow(unsafe_code)]
-pub(crate) fn sqrt4(x: [f32; 4]) -> [f32; 4] {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use core::arch::x86_64::{__m128, _mm_sqrt_ps};
-        // SAFETY: SSE as above; both types are four f32 with no invalid bit patterns.
-        unsafe { core::mem::transmute::<__m128, [f32; 4]>(_mm_sqrt_ps(core::mem::transmute::<[f32; 4], __m128>(x))) }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        x.map(sqrt)
     }
 }
 

@@ -1,7 +1,7 @@
-use crate::force::{Substep, position_row, velocity_row};
-use crate::layout::{copy, span};
+use crate::force::{Finite, Substep, Sweep};
+use crate::layout::copy;
 use crate::math::min;
-use crate::{Cloth, Error, in_default_environment};
+use crate::{Cloth, Error, in_default_environment, simd};
 
 /// What happened in a step, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -76,44 +76,18 @@ impl Cloth<'_> {
     }
 
     fn substep(&mut self, c: &Substep) {
-        match (self.layout.shear, self.layout.bend, self.has_pull) {
-            (false, false, false) => self.sweep::<false, false, false>(c),
-            (false, false, true) => self.sweep::<false, false, true>(c),
-            (false, true, false) => self.sweep::<false, true, false>(c),
-            (false, true, true) => self.sweep::<false, true, true>(c),
-            (true, false, false) => self.sweep::<true, false, false>(c),
-            (true, false, true) => self.sweep::<true, false, true>(c),
-            (true, true, false) => self.sweep::<true, true, false>(c),
-            (true, true, true) => self.sweep::<true, true, true>(c),
-        }
-    }
-
-    /// One pass over memory: the positions of a row are moved two rows behind the velocities, when no force needs them as
-    /// they were.
-    fn sweep<const SHEAR: bool, const BEND: bool, const PULL: bool>(&mut self, c: &Substep) {
-        let l = self.layout;
-        let pull = [&*self.pull[0], &*self.pull[1], &*self.pull[2]];
-        for row in 0..l.rows + 2 {
-            if row < l.rows {
-                velocity_row::<SHEAR, BEND, PULL>(
-                    &l,
-                    row,
-                    c,
-                    self.x.view(),
-                    &self.springs,
-                    self.inverse,
-                    pull,
-                    self.v.x,
-                    self.v.y,
-                    self.v.z,
-                );
-            }
-            if row >= 2 {
-                position_row(&l, row - 2, c.dt, self.x.x, self.v.x);
-                position_row(&l, row - 2, c.dt, self.x.y, self.v.y);
-                position_row(&l, row - 2, c.dt, self.x.z, self.v.z);
-            }
-        }
+        let pull = self.has_pull.then_some([&*self.pull[0], &*self.pull[1], &*self.pull[2]]);
+        let sweep = Sweep {
+            layout: self.layout,
+            constants: c,
+            x: &mut self.x,
+            v: &mut self.v,
+            springs: &self.springs,
+            inverse: self.inverse,
+            pull,
+            carry: self.carry,
+        };
+        simd::run(self.width, sweep);
     }
 
     fn keep_good(&mut self) {
@@ -132,19 +106,9 @@ impl Cloth<'_> {
         }
     }
 
-    /// Whether every position and velocity is finite: x * 0 is 0 for finite x and NaN otherwise.
+    /// Whether every position and velocity is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let l = self.layout;
-        let mut lanes = [0.0f32; 16];
-        for row in 0..l.rows {
-            for plane in [&self.x.x, &self.x.y, &self.x.z, &self.v.x, &self.v.y, &self.v.z] {
-                for block in span(plane, l.row(row), l.width).as_chunks::<16>().0 {
-                    for (lane, x) in lanes.iter_mut().zip(block) {
-                        *lane += x * 0.0;
-                    }
-                }
-            }
-        }
-        lanes.iter().all(|s| *s == 0.0)
+        let planes = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
+        simd::run(self.width, Finite { layout: self.layout, planes })
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Random, bare, bits, cloth, positions, snapshot, squares, steps};
 use taut::field::FieldView;
-use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Hash64, StepFlags, Vector3};
+use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Hash64, StepFlags, Vector3, Width};
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
@@ -140,8 +140,10 @@ fn near_infinity(c: &mut Cloth<'_>) {
 #[test]
 fn a_frame_that_leaves_the_finite_is_taken_back() {
     let def = ClothDef { features: Features::PULL, substeps: 3, ..bare() };
-    for columns in [2, 15, 16, 17] {
+    let widths = || Width::ALL.into_iter().filter(|w| w.is_supported());
+    for (columns, width) in [2, 15, 16, 17].into_iter().flat_map(|n| widths().map(move |w| (n, w))) {
         let mut c = cloth(&squares(6, columns, 0.1, Families::ALL), &def);
+        c.set_width(width).unwrap();
         c.set_stiffness_uniform([100.0, 100.0, 30.0, 2.0]).unwrap();
         c.pin(0).unwrap();
         steps(&mut c, 2);

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use taut::{Cloth, ClothDef, Families, Grid, GridDef};
+use taut::{Cloth, ClothDef, Families, Grid, GridDef, Width};
 
 const SIDES: [u32; 3] = [32, 64, 128];
 
@@ -40,6 +40,24 @@ fn frames(c: &mut Criterion) {
             group.throughput(Throughput::Elements(particle_steps));
             group.bench_function(BenchmarkId::new(name, side), |b| {
                 with_cloth(side, families, &def, |cloth| {
+                    b.iter(|| black_box(cloth.step()));
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// A frame with all families in every vector width that the machine has.
+fn widths(c: &mut Criterion) {
+    let def = ClothDef::default();
+    let mut group = c.benchmark_group("width");
+    for width in Width::ALL.into_iter().filter(|w| w.is_supported()) {
+        for side in [32, 64, 128, 256] {
+            group.throughput(Throughput::Elements(u64::from(side * side * def.substeps)));
+            group.bench_function(BenchmarkId::new(width.name(), side), |b| {
+                with_cloth(side, Families::ALL, &def, |cloth| {
+                    cloth.set_width(width).expect("it is supported");
                     b.iter(|| black_box(cloth.step()));
                 });
             });
@@ -92,6 +110,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = frames, pins, rollback
+    targets = frames, widths, pins, rollback
 }
 criterion_main!(benches);
