@@ -47,14 +47,19 @@
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
-                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))))
+                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) + TAUT_CLOTH_LISTS_(features)))
 
-// Parts of TAUT_CLOTH_BYTES.
+// Parts of TAUT_CLOTH_BYTES: one line a feature, planes first, then the lists whose size the grid does not tell.
+#define TAUT_CLOTH_LISTS_(features) (((features) & TAUT_FEATURE_COLLIDERS) ? (size_t)TAUT_MAX_COLLIDERS * 32 : 0)
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
 #define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
 #define TAUT_CLOTH_PLANES_(families, features)                                                               \
     ((size_t)17 + (((families) & TAUT_FAMILY_SHEAR) ? 3 : 0) + (((families) & TAUT_FAMILY_BEND) ? 3 : 0) +   \
-     (((features) & TAUT_FEATURE_PULL) ? 3 : 0))
+     (((features) & TAUT_FEATURE_PULL) ? 3 : 0) +                                                            \
+     (((features) & (TAUT_FEATURE_AIR | TAUT_FEATURE_HINGE | TAUT_FEATURE_MASS)) ? 3 : 0) +                  \
+     (((features) & TAUT_FEATURE_MASS) ? 1 : 0) + (((features) & TAUT_FEATURE_MASK) ? 1 : 0) +               \
+     (((features) & TAUT_FEATURE_TETHERS) ? 4 : 0) + (((features) & TAUT_FEATURE_LEVELS) ? 3 : 0) +          \
+     (((features) & TAUT_FEATURE_TARGETS) ? 12 : 0) + (((features) & TAUT_FEATURE_IMPLICIT) ? 18 : 0))
 
 
 // Version of this header and library, as in 1.2.3.
@@ -87,6 +92,39 @@
 // Forces on single particles (taut_cloth_add_force).
 #define TAUT_FEATURE_PULL 1
 
+// Air: drag, lift and wind.
+#define TAUT_FEATURE_AIR 2
+
+// Hinge bending.
+#define TAUT_FEATURE_HINGE 4
+
+// Tethers to the nearest pins.
+#define TAUT_FEATURE_TETHERS 8
+
+// The strain limit.
+#define TAUT_FEATURE_STRAIN_LIMIT 16
+
+// The strain limit on levels, from coarse to fine.
+#define TAUT_FEATURE_LEVELS 32
+
+// Colliders, up to TAUT_MAX_COLLIDERS.
+#define TAUT_FEATURE_COLLIDERS 64
+
+// A skinned target of each particle with a largest distance and a backstop.
+#define TAUT_FEATURE_TARGETS 128
+
+// A mass of its own for each particle.
+#define TAUT_FEATURE_MASS 256
+
+// Absent particles.
+#define TAUT_FEATURE_MASK 512
+
+// Working memory of an implicit solver; taut_cloth_def.solver chooses it.
+#define TAUT_FEATURE_IMPLICIT 1024
+
+// Most colliders of a cloth.
+#define TAUT_MAX_COLLIDERS 32
+
 // A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
 // positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
 #define TAUT_STEP_NON_FINITE 1
@@ -98,7 +136,7 @@
 #define TAUT_GRID_ALIGN 8
 
 // Bytes at the start of a cloth's block that its numbers follow, on every target.
-#define TAUT_CLOTH_HEADER_BYTES 1024
+#define TAUT_CLOTH_HEADER_BYTES 2048
 
 // Alignment of the block of a cloth in bytes.
 #define TAUT_CLOTH_ALIGN 64
@@ -190,6 +228,27 @@ typedef uint32_t taut_budget;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// How a frame is solved.
+enum taut_solver
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Symplectic Euler: explicit and cheapest; the stiffness is cut to the budget. The default.
+    TAUT_SOLVER_SYMPLECTIC_EULER = 0,
+    // Implicit Euler with conjugate gradients: the stiffness as it is, at any step; damps motion.
+    TAUT_SOLVER_IMPLICIT_EULER = 1,
+    // The second-order backward difference formula with conjugate gradients: as above, with less damping.
+    TAUT_SOLVER_BDF2 = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_solver taut_solver;
+#else
+typedef uint32_t taut_solver;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -271,6 +330,22 @@ typedef struct {
     // Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256, or the number of
     // particles if that is less.
     uint32_t max_pins;
+    // A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
+    uint32_t solver;
+    // Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    uint32_t cg_iterations;
+    // How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
+    // 5 %). Default 0.
+    float tether_slack[3];
+    // Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    float strain_limit[3];
+    // Passes of the strain limit in each substep, 1 to 64. Default 2.
+    uint32_t strain_passes;
+    // Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
+    float hinge_rigidity_n_m;
+    // A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
+    // 1e3; 0 = never. Default 0.
+    float sleep_speed_m_s;
     // Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
     uint32_t features;
     // Gravity in m/s^2, at most 1e4 in size. Default 0, -9.81, 0.

@@ -1,9 +1,15 @@
+use crate::ambient::Ambient;
 use crate::budget::{self, BudgetReport};
+use crate::colliders::Colliders;
 use crate::field::{self, FieldView};
 use crate::force::{Planes, Springs};
+use crate::implicit::Implicit;
 use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
+use crate::levels::Levels;
 use crate::math::round16;
 use crate::pins::Pins;
+use crate::targets::Targets;
+use crate::tethers::Tethers;
 use crate::{ClothDef, Error, Grid, Vector3, inertia};
 
 /// Farthest that a position may be from the cloth's origin, in m.
@@ -28,7 +34,19 @@ pub struct Cloth<'a> {
     pub(crate) springs: Springs<'a>,
     /// Forces on particles for the next frame in N; empty without the feature.
     pub(crate) pull: [&'a mut [f32]; 3],
+    /// All forces beside springs and weight, for one substep; empty where the pull is all there is.
+    pub(crate) force: [&'a mut [f32]; 3],
+    /// Mass of each particle in kg; empty without the feature.
+    pub(crate) masses: &'a mut [f32],
+    /// 1 for a particle, 0 for an absent one; empty without the feature.
+    pub(crate) mask: &'a mut [f32],
     pub(crate) pins: Pins<'a>,
+    pub(crate) tethers: Tethers<'a>,
+    pub(crate) levels: Levels<'a>,
+    pub(crate) colliders: Colliders<'a>,
+    pub(crate) targets: Targets<'a>,
+    pub(crate) implicit: Implicit<'a>,
+    pub(crate) ambient: Ambient,
     pub(crate) step_index: u64,
     pub(crate) report: BudgetReport,
     pub(crate) has_stiffness: bool,
@@ -86,11 +104,20 @@ impl<'a> Cloth<'a> {
                 bend_v: take(b, when(layout.bend))?,
             },
             pull: [take(b, when(layout.pull))?, take(b, when(layout.pull))?, take(b, when(layout.pull))?],
+            force: [take(b, when(layout.force()))?, take(b, when(layout.force()))?, take(b, when(layout.force()))?],
+            masses: take(b, when(layout.mass))?,
+            mask: take(b, when(layout.mask))?,
             pins: Pins {
                 numbers: take(b, round16(PIN_NUMBERS * layout.max_pins))?,
                 count: 0,
                 capacity: layout.max_pins,
             },
+            tethers: Tethers::new(&layout, b)?,
+            levels: Levels::new(&layout, b)?,
+            colliders: Colliders::new(&layout, b)?,
+            targets: Targets::new(&layout, b)?,
+            implicit: Implicit::new(&layout, b)?,
+            ambient: Ambient::new(def),
             step_index: 0,
             report: BudgetReport::default(),
             has_stiffness: false,
@@ -119,6 +146,10 @@ impl<'a> Cloth<'a> {
         }
         self.has_pull = false;
         self.pins.count = 0;
+        self.ambient = Ambient::new(&self.def);
+        self.colliders.numbers.fill(0.0);
+        self.targets.planes.fill(0.0);
+        self.implicit.planes.fill(0.0);
         self.step_index = 0;
         self.stale = true;
     }
@@ -202,6 +233,8 @@ impl<'a> Cloth<'a> {
             return;
         }
         let l = self.layout;
+        // the damping may have been changed while running
+        let def = ClothDef { damping_per_s: self.ambient.damping(), ..self.def };
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
         copy(former, self.inverse);
@@ -222,8 +255,13 @@ impl<'a> Cloth<'a> {
                 }
             }
         }
-        self.report =
-            budget::project(&self.grid, &self.def, &l, &self.target, self.inverse, &mut self.springs, scratch);
+        self.report = budget::project(&self.grid, &def, &l, &self.target, self.inverse, &mut self.springs, scratch);
+        if l.tethers {
+            self.attach_tethers();
+        }
+        if l.levels {
+            self.prepare_levels();
+        }
         self.stale = false;
     }
 

@@ -25,28 +25,39 @@
 #![no_std]
 #![deny(unsafe_code)]
 
+mod air;
+mod ambient;
 pub mod baked;
 mod budget;
 mod cloth;
+mod colliders;
 mod def;
 mod error;
 pub mod field;
 mod force;
 mod grid;
 mod hash;
+mod hinge;
+mod implicit;
 mod inertia;
 mod lanes;
 mod layout;
+mod levels;
 mod math;
 pub mod noise;
+mod passes;
 mod pins;
 mod snapshot;
 mod step;
 mod strain;
+mod strain_limit;
+mod targets;
+mod tethers;
 
 pub use budget::{BEND_SHARE, BudgetReport, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};
-pub use def::{Budget, ClothDef, Features};
+pub use colliders::MAX_COLLIDERS;
+pub use def::{Budget, ClothDef, Features, Solver};
 pub use error::Error;
 pub use grid::{Families, Grid, GridDef};
 pub use hash::Hash64;

@@ -1,7 +1,7 @@
 use crate::force::{Substep, position_row, velocity_row};
 use crate::layout::{copy, span};
 use crate::math::min;
-use crate::{Cloth, Error};
+use crate::{Cloth, Error, Solver};
 
 /// What happened in a step, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -31,8 +31,17 @@ impl Cloth<'_> {
         let c = self.constants();
         let substeps = self.def.substeps;
         for s in 1..=substeps {
-            self.substep(&c);
-            self.place_pins(s as f32 / substeps as f32);
+            let share = s as f32 / substeps as f32;
+            if self.layout.force() {
+                self.outer_forces(s - 1);
+            }
+            if self.def.solver != Solver::SymplecticEuler {
+                self.implicit_substep(&c);
+            } else {
+                self.substep(&c);
+            }
+            self.place_pins(share);
+            self.constrain(&c, share);
         }
         let finite = self.is_finite();
         if finite {
@@ -44,6 +53,12 @@ impl Cloth<'_> {
                 let pin = self.pins.get(i);
                 self.pins.set(i, crate::pins::Pin { to: pin.from, ..pin });
             }
+        }
+        if self.layout.max_colliders > 0 {
+            self.finish_colliders(finite);
+        }
+        if self.layout.targets {
+            self.finish_targets(finite);
         }
         if self.has_pull {
             for p in &mut self.pull {
@@ -57,20 +72,22 @@ impl Cloth<'_> {
     pub(crate) fn constants(&self) -> Substep {
         let (d, g) = (&self.def, &self.grid);
         let dt = d.dt_s();
+        let [scale_u, scale_v, scale_diagonal] = self.ambient.rest_scale();
         Substep {
             dt,
-            damping: d.damping_per_s,
-            weight: d.gravity_m_s2.map(|g| self.mass * g),
-            rest_u: g.rest_u(),
-            rest_v: g.rest_v(),
-            rest_diagonal: g.rest_diagonal(),
+            damping: self.ambient.damping(),
+            // particles with masses of their own have their weight among the forces
+            weight: if self.layout.mass { [0.0; 3] } else { self.ambient.gravity().map(|g| self.mass * g) },
+            rest_u: g.rest_u() * scale_u,
+            rest_v: g.rest_v() * scale_v,
+            rest_diagonal: g.rest_diagonal() * scale_diagonal,
             floor: if d.compression_limit { -1.0 } else { f32::NEG_INFINITY },
             speed: if d.speed_limit > 0.0 { d.speed_limit * min(g.rest_u(), g.rest_v()) / dt } else { f32::INFINITY },
         }
     }
 
     fn substep(&mut self, c: &Substep) {
-        match (self.layout.shear, self.layout.bend, self.has_pull) {
+        match (self.layout.shear, self.layout.bend, self.has_pull || self.layout.force()) {
             (false, false, false) => self.sweep::<false, false, false>(c),
             (false, false, true) => self.sweep::<false, false, true>(c),
             (false, true, false) => self.sweep::<false, true, false>(c),
@@ -86,7 +103,8 @@ impl Cloth<'_> {
     /// they were.
     fn sweep<const SHEAR: bool, const BEND: bool, const PULL: bool>(&mut self, c: &Substep) {
         let l = self.layout;
-        let pull = [&*self.pull[0], &*self.pull[1], &*self.pull[2]];
+        let forces = if l.force() { &self.force } else { &self.pull };
+        let pull = [&*forces[0], &*forces[1], &*forces[2]];
         for row in 0..l.rows + 2 {
             if row < l.rows {
                 velocity_row::<SHEAR, BEND, PULL>(
