@@ -36,12 +36,22 @@ impl Ambient {
         self.numbers.get(at).copied().unwrap_or(0.0)
     }
 
-    /// Writes numbers from a place on.
-    pub fn set(&mut self, at: usize, values: &[f32]) {
+    /// Writes numbers from a place on. Returns whether one of them was another before.
+    pub fn set(&mut self, at: usize, values: &[f32]) -> bool {
+        let mut changed = false;
         for (to, from) in self.numbers.iter_mut().skip(at).zip(values) {
-            self.changed |= *to != *from;
+            // bits: -0 is another number, which the signs of sums can show
+            changed |= to.to_bits() != from.to_bits();
             *to = *from;
         }
+        self.changed |= changed;
+        changed
+    }
+
+    /// Checks what may be anything, as the setters do. Errors: theirs.
+    pub fn check(&self, def: &ClothDef) -> Result<(), Error> {
+        ClothDef { gravity_m_s2: self.gravity(), damping_per_s: self.damping(), ..*def }.check()?;
+        check_scale(self.rest_scale())
     }
 
     /// Gravity in m/s^2.
@@ -66,7 +76,9 @@ impl Cloth<'_> {
     /// Errors: [`Error::NotFinite`], [`Error::OutOfRange`].
     pub fn set_gravity(&mut self, gravity_m_s2: [f32; 3]) -> Result<(), Error> {
         ClothDef { gravity_m_s2, ..self.def }.check()?;
-        self.ambient.set(0, &gravity_m_s2);
+        if self.ambient.set(0, &gravity_m_s2) {
+            self.wake();
+        }
         Ok(())
     }
 
@@ -80,8 +92,10 @@ impl Cloth<'_> {
     /// Errors: [`Error::NotFinite`], [`Error::Negative`], [`Error::Damping`].
     pub fn set_damping(&mut self, damping_per_s: f32) -> Result<(), Error> {
         ClothDef { damping_per_s, ..self.def }.check()?;
-        self.stale |= damping_per_s != self.ambient.damping();
-        self.ambient.set(3, &[damping_per_s]);
+        if self.ambient.set(3, &[damping_per_s]) {
+            self.stale = true;
+            self.wake();
+        }
         Ok(())
     }
 
@@ -89,4 +103,37 @@ impl Cloth<'_> {
     pub fn damping(&self) -> f32 {
         self.ambient.damping()
     }
+
+    /// Factors of the rest lengths from the next step on, 0.5 to 2: of the warp (structural and bend springs along v), the weft
+    /// (those along u), and the diagonals. Below 1 the cloth shrinks, or is pre-stretched where pins hold it; above 1 it
+    /// has slack. A sheet that is flat at rest without tension needs diagonals that fit the sides: with the weft w times a
+    /// and the warp h times b, sqrt((w a)^2 + (h b)^2) / sqrt(w^2 + h^2). Strain is that against the scaled lengths. The
+    /// stiffness k stays, and the inertia field keeps the distances of the grid; the budget is computed anew.
+    ///
+    /// Errors: [`Error::NotFinite`], [`Error::OutOfRange`].
+    pub fn set_rest_scale(&mut self, [warp, weft, diagonal]: [f32; 3]) -> Result<(), Error> {
+        let scale = [weft, warp, diagonal];
+        check_scale(scale)?;
+        if self.ambient.set(REST_AT, &scale) {
+            self.stale = true;
+            self.wake();
+        }
+        Ok(())
+    }
+
+    /// Factors of the rest lengths: warp, weft, diagonal.
+    pub fn rest_scale(&self) -> [f32; 3] {
+        let [weft, warp, diagonal] = self.ambient.rest_scale();
+        [warp, weft, diagonal]
+    }
+}
+
+fn check_scale(scale: [f32; 3]) -> Result<(), Error> {
+    if !scale.iter().all(|s| s.is_finite()) {
+        return Err(Error::NotFinite);
+    }
+    if !scale.iter().all(|s| (0.5..=2.0).contains(s)) {
+        return Err(Error::OutOfRange);
+    }
+    Ok(())
 }

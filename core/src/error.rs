@@ -53,11 +53,13 @@ pub enum Error {
     Damping = -22,
     /// The caller and the library are of different versions.
     VersionMismatch = -23,
+    /// The particle is absent: the mask says so.
+    Absent = -24,
 }
 
 impl Error {
     /// Every error, in the order of the codes.
-    pub const ALL: [Error; 23] = [
+    pub const ALL: [Error; 24] = [
         Error::NullPointer,
         Error::Misaligned,
         Error::BlockTooSmall,
@@ -81,6 +83,7 @@ impl Error {
         Error::Foreign,
         Error::Damping,
         Error::VersionMismatch,
+        Error::Absent,
     ];
 
     /// The C result code: negative.
@@ -114,6 +117,7 @@ impl Error {
             Error::Foreign => "the snapshot belongs to another grid or definition",
             Error::Damping => "damping times dt must stay below 1",
             Error::VersionMismatch => "the caller was compiled against another version",
+            Error::Absent => "the particle is absent: the mask says so",
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::lanes::{LANES, Lanes};
 use crate::layout::{Layout, span};
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
-const TINY: f32 = 1e-30;
+pub(crate) const TINY: f32 = 1e-30;
 
 /// The springs that start at each particle, in N/m, after the budget.
 pub(crate) struct Springs<'a> {

@@ -2,7 +2,7 @@
 
 use crate::Cloth;
 use crate::force::Substep;
-use crate::layout::{copy, read, write};
+use crate::layout::copy;
 
 impl Cloth<'_> {
     /// The forces beside the springs, in N, summed in the planes that the velocity pass adds: the pull, the weight where
@@ -17,17 +17,7 @@ impl Cloth<'_> {
             }
         }
         if l.mass {
-            let gravity = self.ambient.gravity();
-            for row in 0..l.rows {
-                for column in 0..l.columns {
-                    let at = l.at(row, column);
-                    let m = read(self.masses, at);
-                    for (force, g) in self.force.iter_mut().zip(gravity) {
-                        let sum = read(force, at) + m * g;
-                        write(force, at, sum);
-                    }
-                }
-            }
+            self.add_weight();
         }
         if l.hinge {
             self.add_hinges();

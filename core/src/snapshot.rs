@@ -4,19 +4,25 @@
 //! |---|---|
 //! | 0..8 | `TAUTSNAP` |
 //! | 8..12, 12..16 | version 1, number of bytes |
-//! | 16..24 | digest of grid and definition |
+//! | 16..24 | digest of grid, definition, masses and mask |
 //! | 24..32 | step index |
-//! | 32..36, 36..40 | number of pins, bits: 1 if forces are pending, 2 if the surroundings (gravity, damping, air, rest lengths) were changed |
+//! | 32..36, 36..40 | number of pins, bits: 1 if forces are pending, 2 if the surroundings (gravity, damping, air, rest lengths) were changed, 4 if the frame was moved |
+//! | then | the frame, if it was moved: position and rotation (x, y, z, w), seven f64 |
 //! | then | x, y, z, vx, vy, vz: f32 `[rows][columns]` each |
 //! | then | the pending forces, three times f32 `[rows][columns]`, if any |
-//! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2 |
+//! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2, frames of quiet if the cloth may sleep |
 //! | then | each pin: particle as f32, from x y z, to x y z |
 //! | last 8 | hash of all bytes before |
 //!
-//! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins) and the origin.
+//! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins), masses and mask.
+//!
+//! The frame is in a snapshot (without it the next one would be a leap), but not in the hash: two machines that shift their
+//! worlds differently agree on the local state.
 
 use crate::ambient::Ambient;
+use crate::frame::Pose;
 use crate::layout::{PIN_NUMBERS, read};
+use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
@@ -25,6 +31,9 @@ const HEADER: usize = 40;
 /// Bits of the flags.
 const PULL: u32 = 1;
 const AMBIENT: u32 = 2;
+const FRAME: u32 = 4;
+/// Bytes of the frame.
+const FRAME_BYTES: usize = 56;
 
 impl Cloth<'_> {
     /// Bytes of a snapshot of the cloth as it is now.
@@ -34,23 +43,26 @@ impl Cloth<'_> {
 
     /// Bytes that every snapshot of this cloth fits in.
     pub fn snapshot_size_max(&self) -> usize {
-        self.size_of_snapshot(self.pins.capacity, AMBIENT | if self.layout.pull { PULL } else { 0 })
+        self.size_of_snapshot(self.pins.capacity, FRAME | AMBIENT | if self.layout.pull { PULL } else { 0 })
     }
 
     fn flags(&self) -> u32 {
-        (if self.has_pull { PULL } else { 0 }) | (if self.ambient.changed { AMBIENT } else { 0 })
+        (if self.has_pull { PULL } else { 0 })
+            | (if self.ambient.changed { AMBIENT } else { 0 })
+            | (if self.pose != Pose::new(&self.def) { FRAME } else { 0 })
     }
 
     fn size_of_snapshot(&self, pins: usize, flags: u32) -> usize {
         let planes = if flags & PULL != 0 { 9 } else { 6 };
         let ambient = if flags & AMBIENT != 0 { self.ambient.numbers.len() } else { 0 };
         let parts: usize = self.parts().iter().map(|p| p.len()).sum();
-        HEADER + 4 * (planes * self.grid.particles() + ambient + parts + PIN_NUMBERS * pins) + 8
+        let frame = if flags & FRAME != 0 { FRAME_BYTES } else { 0 };
+        HEADER + frame + 4 * (planes * self.grid.particles() + ambient + parts + PIN_NUMBERS * pins) + 8
     }
 
     /// The state of the optional parts, empty where they are off.
-    fn parts(&self) -> [&[f32]; 3] {
-        [self.colliders.numbers, self.targets.planes, self.implicit.state()]
+    fn parts(&self) -> [&[f32]; 4] {
+        [self.colliders.numbers, self.targets.planes, self.implicit.state(), self.sleep.state()]
     }
 
     fn digest(&self) -> u64 {
@@ -58,6 +70,9 @@ impl Cloth<'_> {
         let g = self.grid.digest();
         h.words(&[g as u32, (g >> 32) as u32]);
         self.def.digest(&mut h);
+        if self.layout.mass || self.layout.mask {
+            h.words(&[self.matter as u32, (self.matter >> 32) as u32]);
+        }
         h.finish()
     }
 
@@ -109,6 +124,11 @@ impl Cloth<'_> {
         put(&mut rest, &self.step_index.to_le_bytes());
         put(&mut rest, &(self.pins.count as u32).to_le_bytes());
         put(&mut rest, &self.flags().to_le_bytes());
+        if self.flags() & FRAME != 0 {
+            for number in self.pose.numbers() {
+                put(&mut rest, &number.to_le_bytes());
+            }
+        }
         self.each_row(|row| put_floats(&mut rest, row));
         if self.ambient.changed {
             put_floats(&mut rest, &self.ambient.numbers);
@@ -126,7 +146,9 @@ impl Cloth<'_> {
     /// Reads a state back. The whole snapshot is checked before anything is changed.
     ///
     /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::Foreign`] (another
-    /// grid or definition), [`Error::Checksum`], [`Error::Shape`].
+    /// grid or definition, other masses, another mask), [`Error::Checksum`], [`Error::Shape`]; for bytes that no cloth wrote
+    /// [`Error::NotFinite`], [`Error::OutOfRange`], [`Error::Negative`], [`Error::Damping`], [`Error::NoSuchParticle`],
+    /// [`Error::Absent`].
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let (header, _) = bytes.split_at_checked(HEADER).ok_or(Error::Truncated)?;
         if !header.starts_with(MAGIC) {
@@ -143,7 +165,7 @@ impl Cloth<'_> {
             return Err(Error::Foreign);
         }
         if pins > self.pins.capacity
-            || flags > PULL | AMBIENT
+            || flags > PULL | AMBIENT | FRAME
             || (pull && !self.layout.pull)
             || size != self.size_of_snapshot(pins, flags)
         {
@@ -155,9 +177,25 @@ impl Cloth<'_> {
         if u64_at(tail, 0) != h.finish() {
             return Err(Error::Checksum);
         }
-        let (numbers, _) = body.get(HEADER..).unwrap_or(&[]).as_chunks::<4>();
+        let mut from = HEADER;
+        let mut pose = Pose::new(&self.def);
+        if flags & FRAME != 0 {
+            let number = |i: usize| f64::from_bits(u64_at(body, HEADER + 8 * i));
+            pose = Pose::from_numbers([0, 1, 2, 3, 4, 5, 6].map(number)).checked()?;
+            from += FRAME_BYTES;
+        }
+        let (numbers, _) = body.get(from..).unwrap_or(&[]).as_chunks::<4>();
         let number = |i: usize| numbers.get(i).map_or(0.0, |b| f32::from_le_bytes(*b));
         self.check_numbers(&number, numbers.len(), pins)?;
+        let mut ambient = Ambient::new(&self.def);
+        if flags & AMBIENT != 0 {
+            let from = self.grid.particles() * if pull { 9 } else { 6 };
+            for (i, to) in ambient.numbers.iter_mut().enumerate() {
+                *to = number(from + i);
+            }
+            ambient.changed = true;
+            ambient.check(&self.def)?;
+        }
 
         let l = self.layout;
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
@@ -173,17 +211,20 @@ impl Cloth<'_> {
                 next += l.columns;
             }
         }
-        let damping = self.ambient.damping();
-        self.ambient = Ambient::new(&self.def);
         if flags & AMBIENT != 0 {
-            for to in &mut self.ambient.numbers {
-                *to = number(next);
-                next += 1;
-            }
-            self.ambient.changed = true;
+            next += ambient.numbers.len();
         }
-        self.stale |= damping != self.ambient.damping();
-        for part in [&mut *self.colliders.numbers, &mut *self.targets.planes, self.implicit.state_mut()] {
+        // the budget depends on them
+        self.stale |= self.ambient.damping() != ambient.damping() || self.ambient.rest_scale() != ambient.rest_scale();
+        self.ambient = ambient;
+        self.pose = pose;
+        let parts = [
+            &mut *self.colliders.numbers,
+            &mut *self.targets.planes,
+            self.implicit.state_mut(),
+            self.sleep.state_mut(),
+        ];
+        for part in parts {
             for to in part {
                 *to = number(next);
                 next += 1;
@@ -213,7 +254,7 @@ impl Cloth<'_> {
         Ok(())
     }
 
-    /// A snapshot holds finite numbers and ascending pins of existing particles.
+    /// A snapshot holds finite numbers, a possible sleep, and ascending pins of existing particles.
     fn check_numbers(&self, number: &impl Fn(usize) -> f32, count: usize, pins: usize) -> Result<(), Error> {
         let mut sum = 0.0f32;
         for i in 0..count {
@@ -223,9 +264,16 @@ impl Cloth<'_> {
             return Err(Error::NotFinite);
         }
         let first = count - PIN_NUMBERS * pins;
+        // the last of the parts
+        if !self.sleep.state().is_empty() {
+            self.sleep.check(number(first - 1))?;
+        }
         let mut least = 0.0;
         for i in 0..pins {
             let particle = number(first + i * PIN_NUMBERS);
+            if self.layout.place(particle as usize).is_ok_and(|at| is_absent(self.mask, at)) {
+                return Err(Error::Absent);
+            }
             if particle < least || particle >= self.grid.particles() as f32 || particle != libm::floorf(particle) {
                 return Err(Error::NoSuchParticle);
             }

@@ -11,6 +11,8 @@ impl StepFlags {
     /// The frame would have ended with a number that is not finite. It was taken back whole: positions, velocities, pins
     /// and step index are those before the call; pin targets and forces of the frame are dropped.
     pub const NON_FINITE: StepFlags = StepFlags(1);
+    /// The cloth slept through the frame: only the step index has changed ([`crate::ClothDef::sleep_speed_m_s`]).
+    pub const ASLEEP: StepFlags = StepFlags(2);
 
     /// Whether every flag of `other` is set.
     pub const fn contains(self, other: StepFlags) -> bool {
@@ -25,6 +27,10 @@ impl Cloth<'_> {
     pub fn step(&mut self) -> Result<StepFlags, Error> {
         if !self.has_stiffness {
             return Err(Error::NoStiffness);
+        }
+        if self.is_asleep() {
+            self.step_index += 1;
+            return Ok(StepFlags::ASLEEP);
         }
         self.refresh(true);
         self.keep_good();
@@ -66,6 +72,7 @@ impl Cloth<'_> {
             }
             self.has_pull = false;
         }
+        self.settle(finite);
         Ok(if finite { StepFlags(0) } else { StepFlags::NON_FINITE })
     }
 
