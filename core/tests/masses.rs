@@ -25,11 +25,11 @@ fn equal_masses_have_the_bits_of_no_masses() {
 }
 
 /// Everything falls alike: v = -g t. The weight m g is rounded and divided by m, which is 2 ulp a substep at most. Springs add
-/// what the rounding of positions makes of forces on the lightest ones.
+/// what the rounding of positions (5e-7 m after a fall of 5 m) makes of forces on the lightest ones, but no momentum.
 #[test]
 fn free_fall_does_not_depend_on_the_mass() {
     let def = with(0, ClothDef { damping_per_s: 0.0, speed_limit: 0.0, ..ClothDef::default() });
-    for (k, tolerance) in [([0.0; 4], 1e-5), ([500.0, 500.0, 100.0, 8.0], 1e-3)] {
+    for (k, tolerance) in [([0.0; 4], 1e-5), ([500.0, 500.0, 100.0, 8.0], 5e-3)] {
         let mut c = cloth(&squares(8, 8, 0.1, Families::ALL), &def);
         c.set_stiffness_uniform(k).unwrap();
         let mut random = Random::new(1);
@@ -40,7 +40,10 @@ fn free_fall_does_not_depend_on_the_mass() {
             near(v.y.into(), -9.81, tolerance, "v");
             assert!(f64::from(v.x.abs()) < 10.0 * tolerance && v.z == 0.0);
         }
-        assert!(c.strain().largest < 1e-4);
+        assert!(c.strain().largest < 2e-3);
+        let momentum: f64 = velocities(&c).iter().zip(&kg).map(|(v, m)| f64::from(v.y * m)).sum();
+        let mass: f64 = kg.iter().map(|m| f64::from(*m)).sum();
+        near(momentum, -9.81 * mass, 1e-5, "momentum");
     }
 }
 

@@ -80,7 +80,7 @@ fn without_a_speed_it_never_sleeps() {
 
 type Call = fn(&mut Cloth<'_>);
 
-/// Everything that changes something; the first two do not move a sheet at rest.
+/// Everything that changes something.
 const WAKING: [(&str, Call); 19] = [
     ("wake", |c| c.wake()),
     ("pin", |c| c.pin(30).unwrap()),
@@ -106,7 +106,7 @@ const WAKING: [(&str, Call); 19] = [
     ("set_frame without inertia", |c| {
         c.set_frame(&Frame { position_m: [0.01, 0.0, 0.0], ..c.frame() }, 0.0, 0.0).unwrap();
     }),
-    ("a turn", |c| c.set_frame(&Frame { rotation: [0.0, 0.1, 0.0, 1.0], ..c.frame() }, 1.0, 1.0).unwrap()),
+    ("a turn", |c| c.set_frame(&Frame { rotation: [0.0, 0.1, 0.0, 1.0], ..c.frame() }, 1.0, 0.0).unwrap()),
     ("a turning teleport", |c| c.teleport(&Frame { rotation: [0.1, 0.0, 0.0, 1.0], ..c.frame() }).unwrap()),
     ("reset", |c| c.reset()),
     ("load_stiffness", |c| {
@@ -129,7 +129,8 @@ fn whatever_changes_something_wakes_it() {
             assert_eq!(c.step().unwrap(), StepFlags(0), "{name}");
         }
         let moved = positions(&c).iter().zip(before).fold(0.0f32, |a, (p, q)| a.max((p - q).norm()));
-        assert!(["wake", "pin"].contains(&name) || moved > 1e-4, "{name}: {moved} m");
+        let at_rest = ["wake", "pin", "set_damping"].contains(&name);
+        assert!(at_rest || moved > 1e-4, "{name}: {moved} m");
     }
 }
 
