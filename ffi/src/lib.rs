@@ -39,12 +39,22 @@ mod field;
 
 mod stiffness;
 
+mod matter;
+
+mod surroundings;
+
 mod pins;
 
 mod particle;
 
+mod frame;
+
 mod step;
 
+mod sleep;
+
 mod read;
+
+mod pin_force;
 
 mod rollback;

@@ -56,6 +56,8 @@ pub enum Code {
     TAUT_ERROR_DAMPING = -22,
     /// The program was compiled with the header of another version.
     TAUT_ERROR_VERSION_MISMATCH = -23,
+    /// The particle is absent: the mask says so.
+    TAUT_ERROR_ABSENT = -24,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -106,6 +108,7 @@ rows! {
     TAUT_ERROR_FOREIGN c"TAUT_ERROR_FOREIGN" Foreign,
     TAUT_ERROR_DAMPING c"TAUT_ERROR_DAMPING" Damping,
     TAUT_ERROR_VERSION_MISMATCH c"TAUT_ERROR_VERSION_MISMATCH" VersionMismatch,
+    TAUT_ERROR_ABSENT c"TAUT_ERROR_ABSENT" Absent,
 }
 
 /// The codes that only C has.

@@ -31,9 +31,9 @@ pub const TAUT_FEATURE_LEVELS: u32 = 32;
 pub const TAUT_FEATURE_COLLIDERS: u32 = 64;
 /// A skinned target of each particle with a largest distance and a backstop.
 pub const TAUT_FEATURE_TARGETS: u32 = 128;
-/// A mass of its own for each particle.
+/// A mass of its own for each particle (taut_cloth_set_masses).
 pub const TAUT_FEATURE_MASS: u32 = 256;
-/// Absent particles.
+/// Absent particles (taut_cloth_set_mask).
 pub const TAUT_FEATURE_MASK: u32 = 512;
 /// Working memory of an implicit solver; taut_cloth_def.solver chooses it.
 pub const TAUT_FEATURE_IMPLICIT: u32 = 1024;
@@ -44,6 +44,8 @@ pub const TAUT_MAX_COLLIDERS: usize = 32;
 /// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
 /// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
 pub const TAUT_STEP_NON_FINITE: u32 = 1;
+/// A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
+pub const TAUT_STEP_ASLEEP: u32 = 2;
 
 const _: () = {
     assert!(TAUT_MAX_SIDE == taut_core::Grid::MAX_SIDE);
@@ -68,6 +70,7 @@ const _: () = {
     assert!(Solver::TAUT_SOLVER_IMPLICIT_EULER as u32 == taut_core::Solver::ImplicitEuler as u32);
     assert!(Solver::TAUT_SOLVER_BDF2 as u32 == taut_core::Solver::Bdf2 as u32);
     assert!(TAUT_STEP_NON_FINITE == taut_core::StepFlags::NON_FINITE.0);
+    assert!(TAUT_STEP_ASLEEP == taut_core::StepFlags::ASLEEP.0);
     assert!(Budget::TAUT_BUDGET_CERTIFIED as u32 == taut_core::Budget::Certified as u32);
     assert!(Budget::TAUT_BUDGET_TUNED as u32 == taut_core::Budget::Tuned as u32);
 };
@@ -203,6 +206,17 @@ pub struct Counts {
     pub springs: u32,
 }
 
+/// Where a cloth's frame is in the world.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Frame {
+    /// Position in m, each at most 1e12 in size: the origin of the local frame.
+    pub position_m: [f64; 3],
+    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. The local axes stay those of the world: only changes of the rotation
+    /// count. 0, 0, 0, 1 is how the cloth was made.
+    pub rotation: [f32; 4],
+}
+
 /// What the budget made of the stiffness.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -292,6 +306,18 @@ impl From<taut_core::baked::Fabric> for Fabric {
             limit_weft,
             limit_diagonal,
         }
+    }
+}
+
+impl From<taut_core::Frame> for Frame {
+    fn from(f: taut_core::Frame) -> Frame {
+        Frame { position_m: f.position_m, rotation: f.rotation }
+    }
+}
+
+impl From<Frame> for taut_core::Frame {
+    fn from(f: Frame) -> taut_core::Frame {
+        taut_core::Frame { position_m: f.position_m, rotation: f.rotation }
     }
 }
 
