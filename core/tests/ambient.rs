@@ -204,14 +204,14 @@ fn the_tuned_budget_sees_the_tension() {
 }
 
 /// Pinned all around, pre-stretched, at the limit of the budget (so uncut, uniform, and at rest while flat), no damping and no
-/// clamps: a small motion stays small. Under the bound of the sheet without tension the tuned one blows up.
+/// clamps: a small motion stays small. Under the bound of the sheet without tension the tuned one of structural springs
+/// blows up.
 #[test]
 fn a_pre_stretched_drum_is_stable() {
     for budget in [Budget::Certified, Budget::Tuned] {
-        for scale in [0.5f32, 0.8] {
-            // bend springs would pull the rows beside the border inwards
-            let families = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
-            let mut c = cloth(&squares(14, 14, 0.1, families), &ClothDef { budget, ..bare() });
+        // bend springs would pull the rows beside the border inwards
+        for (families, scale) in [(1, 0.5f32), (1, 0.8), (3, 0.5), (3, 0.8)] {
+            let mut c = cloth(&squares(14, 14, 0.1, Families(families)), &ClothDef { budget, ..bare() });
             let k = [100.0, 100.0, 30.0, 2.0];
             c.set_stiffness_uniform(k).unwrap();
             c.set_rest_scale([scale; 3]).unwrap();
@@ -227,7 +227,7 @@ fn a_pre_stretched_drum_is_stable() {
             let start = c.kinetic_energy_j();
             steps(&mut c, 4000);
             let end = c.kinetic_energy_j();
-            assert!(end < 4.0 * start, "{budget:?} {scale}: {start} J became {end} J");
+            assert!(end < 4.0 * start, "{budget:?} {families} {scale}: {start} J became {end} J");
         }
     }
 }
