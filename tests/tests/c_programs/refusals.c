@@ -188,7 +188,7 @@ static int definitions(void)
     WRONG(TAUT_ERROR_OUT_OF_RANGE, budget = 2);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, budget = 0xffffffffu);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, compression_limit = 2);
-    WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2);
+    WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2048);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, speed_limit = 1e-7f);
     return 0;
 }
