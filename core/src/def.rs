@@ -35,9 +35,9 @@ impl Features {
     pub const COLLIDERS: Features = Features(64);
     /// A skinned target of each particle with a largest distance and a backstop.
     pub const TARGETS: Features = Features(128);
-    /// A mass of its own for each particle.
+    /// A mass of its own for each particle ([`crate::Cloth::set_masses`]).
     pub const MASS: Features = Features(256);
-    /// Absent particles.
+    /// Absent particles ([`crate::Cloth::set_mask`]).
     pub const MASK: Features = Features(512);
     /// Working memory of an implicit solver; [`ClothDef::solver`] chooses it.
     pub const IMPLICIT: Features = Features(1024);

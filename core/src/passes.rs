@@ -9,6 +9,10 @@ impl Cloth<'_> {
     /// particles have masses of their own, hinges, air.
     pub(crate) fn outer_forces(&mut self, substep: u32) {
         let l = self.layout;
+        if substep > 0 && !l.hinge && !l.air {
+            // pull and weight are the same in the whole frame
+            return;
+        }
         for (force, pull) in self.force.iter_mut().zip(&self.pull) {
             if self.has_pull {
                 copy(force, pull);

@@ -64,7 +64,7 @@ fn the_surroundings_are_state() {
     c.pin(0).unwrap();
     c.pin(8).unwrap();
     steps(&mut c, 10);
-    let mut future = |c: &mut Cloth<'_>| {
+    let future = |c: &mut Cloth<'_>| {
         let saved = snapshot(c);
         let hash = c.state_hash();
         steps(c, 20);
