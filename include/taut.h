@@ -109,9 +109,45 @@
 // Forces on single particles (taut_cloth_add_force).
 #define TAUT_FEATURE_PULL 1
 
+// Air: drag, lift and wind.
+#define TAUT_FEATURE_AIR 2
+
+// Hinge bending.
+#define TAUT_FEATURE_HINGE 4
+
+// Tethers to the nearest pins.
+#define TAUT_FEATURE_TETHERS 8
+
+// The strain limit.
+#define TAUT_FEATURE_STRAIN_LIMIT 16
+
+// The strain limit on levels, from coarse to fine.
+#define TAUT_FEATURE_LEVELS 32
+
+// Colliders, up to TAUT_MAX_COLLIDERS.
+#define TAUT_FEATURE_COLLIDERS 64
+
+// A skinned target of each particle with a largest distance and a backstop.
+#define TAUT_FEATURE_TARGETS 128
+
+// A mass of its own for each particle (taut_cloth_set_masses).
+#define TAUT_FEATURE_MASS 256
+
+// Absent particles (taut_cloth_set_mask).
+#define TAUT_FEATURE_MASK 512
+
+// Working memory of an implicit solver; taut_cloth_def.solver chooses it.
+#define TAUT_FEATURE_IMPLICIT 1024
+
+// Most colliders of a cloth.
+#define TAUT_MAX_COLLIDERS 32
+
 // A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
 // positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
 #define TAUT_STEP_NON_FINITE 1
+
+// A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
+#define TAUT_STEP_ASLEEP 2
 
 // Bytes of the block of a grid, on every target.
 #define TAUT_GRID_BYTES 64
@@ -120,7 +156,7 @@
 #define TAUT_GRID_ALIGN 8
 
 // Bytes at the start of a cloth's block that its numbers follow, on every target.
-#define TAUT_CLOTH_HEADER_BYTES 1024
+#define TAUT_CLOTH_HEADER_BYTES 2048
 
 // Alignment of the block of a cloth in bytes.
 #define TAUT_CLOTH_ALIGN 64
@@ -214,6 +250,27 @@ typedef uint32_t taut_budget;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// How a frame is solved.
+enum taut_solver
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Symplectic Euler: explicit and cheapest; the stiffness is cut to the budget. The default.
+    TAUT_SOLVER_SYMPLECTIC_EULER = 0,
+    // Implicit Euler with conjugate gradients: the stiffness as it is, at any step; damps motion.
+    TAUT_SOLVER_IMPLICIT_EULER = 1,
+    // The second-order backward difference formula with conjugate gradients: as above, with less damping.
+    TAUT_SOLVER_BDF2 = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_solver taut_solver;
+#else
+typedef uint32_t taut_solver;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -295,6 +352,22 @@ typedef struct {
     // Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256, or the number of
     // particles if that is less.
     uint32_t max_pins;
+    // A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
+    uint32_t solver;
+    // Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    uint32_t cg_iterations;
+    // How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
+    // 5 %). Default 0.
+    float tether_slack[3];
+    // Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    float strain_limit[3];
+    // Passes of the strain limit in each substep, 1 to 64. Default 2.
+    uint32_t strain_passes;
+    // Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
+    float hinge_rigidity_n_m;
+    // A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
+    // 1e3; 0 = never. Default 0.
+    float sleep_speed_m_s;
     // Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
     uint32_t features;
     // Gravity in m/s^2, at most 1e4 in size. Default 0, -9.81, 0.
@@ -346,6 +419,15 @@ typedef struct {
     // Inertia that the inertia field adds, as a share of the mass of the free particles.
     float inertia_added;
 } taut_budget_report;
+
+// Where a cloth's frame is in the world.
+typedef struct {
+    // Position in m, each at most 1e12 in size: the origin of the local frame.
+    double position_m[3];
+    // Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. The local axes stay those of the world: only changes of the rotation
+    // count. 0, 0, 0, 1 is how the cloth was made.
+    float rotation[4];
+} taut_frame;
 
 // The positions of a cloth without a copy: particle (row, column) is number row * row_stride + column of x, y and z, in m
 // in the local frame; add origin_m for the world. Valid until the next call that is handed the cloth without const.
@@ -472,7 +554,8 @@ taut_result taut_cloth_create(const taut_grid *on,
                               size_t block_size,
                               taut_cloth **out);
 
-// Back to the start: flat, at rest, nothing pinned, step 0. The stiffness stays.
+// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
+// Stiffness, masses and mask stay.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth.
@@ -545,10 +628,66 @@ taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
 // Threads: changes the cloth.
 TAUT_API taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
 
+// Chooses which particles exist, by a byte for each of the count particles: 0 is absent, everything else is present. Needs
+// TAUT_FEATURE_MASK; at first all are present. May be called at any time, so a cloth can tear.
+//
+// An absent particle has no springs, no weight and no pin, and is left out of strain and energy; its position stays where
+// it last was, and one that comes back is there at rest. A bend spring also needs the particle in its middle, a diagonal one
+// of the two other corners of its cell. taut_cloth_reset keeps the mask and a snapshot does not hold it, but a snapshot that
+// was taken under another mask is TAUT_ERROR_FOREIGN. All or nothing.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
+// (count is not the number of particles).
+// Threads: changes the cloth.
+taut_result taut_cloth_set_mask(taut_cloth *cloth,
+                                uint32_t count,
+                                const uint8_t *present);
+
+// Sets the mass of each of the count particles in kg, 1e-6 to 1e6 times its share of the sheet's mass (density times width
+// times height over the number of particles), which is what each has at first. Needs TAUT_FEATURE_MASS. Velocities stay as
+// they are. taut_cloth_reset keeps the masses and a snapshot does not hold them, but a snapshot that was taken with other
+// masses is TAUT_ERROR_FOREIGN. All or nothing.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
+// (count is not the number of particles), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_masses(taut_cloth *cloth,
+                                  uint32_t count,
+                                  const float *mass_kg);
+
+// Gravity from the next step on, x, y, z in m/s^2, at most 1e4 in size. It is part of the state once it is not that of the
+// definition any more; so are damping and rest lengths.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_gravity(taut_cloth *cloth,
+                                   const float gravity_m_s2[3]);
+
+// Damping c from the next step on, in 1/s: at least 0, and c dt below 1. The budget depends on it and is computed anew.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_NEGATIVE, TAUT_ERROR_DAMPING.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_damping(taut_cloth *cloth, float damping_per_s);
+
+// Factors of the rest lengths from the next step on, 0.5 to 2: of the warp (structural and bend springs along v), the weft
+// (those along u), and the diagonals. Below 1 the cloth shrinks, or is pre-stretched where pins hold it; above 1 it has slack.
+// With the same factor for all three a flat sheet is flat without tension again. Strain is that against the scaled lengths;
+// the stiffness stays, and the budget is computed anew.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_rest_scale(taut_cloth *cloth,
+                                      float warp,
+                                      float weft,
+                                      float diagonal);
+
 // Pins a particle where it is. One that is pinned already stays as it is.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
-// TAUT_ERROR_TOO_MANY_PINS.
+// TAUT_ERROR_ABSENT, TAUT_ERROR_TOO_MANY_PINS.
 // Threads: changes the cloth.
 TAUT_API taut_result taut_cloth_pin(taut_cloth *cloth, uint32_t particle);
 
@@ -599,14 +738,14 @@ taut_result taut_cloth_set_positions(taut_cloth *cloth,
 // Sets the velocity of a particle, x, y, z in m/s; a pinned one keeps that of its pin.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
-// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
+// TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
 // Threads: changes the cloth.
 TAUT_API taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particle, const float v_m_s[3]);
 
 // Adds a force on a particle, x, y, z in N, which acts during the next frame. Needs TAUT_FEATURE_PULL.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
-// TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
+// TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 // Threads: changes the cloth.
 TAUT_API taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
 
@@ -650,6 +789,18 @@ TAUT_API
 taut_result taut_cloth_step_all(taut_cloth *const *cloths,
                                 uint32_t count,
                                 uint32_t *out_flags);
+
+// Wakes a cloth that sleeps (taut_cloth_def.sleep_speed_m_s). Calls that change something do it by themselves.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: changes the cloth.
+taut_result taut_cloth_wake(taut_cloth *cloth);
+
+// Whether the cloth sleeps: 1, or 0.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_is_asleep(const taut_cloth *cloth, uint32_t *out);
 
 // The positions without a copy.
 //
@@ -767,6 +918,31 @@ taut_result taut_cloth_copy_normals_f32(const taut_cloth *cloth,
 // Threads: reads the cloth.
 TAUT_API taut_result taut_cloth_bounds(const taut_cloth *cloth, taut_bounds *out);
 
+// Force with which a pin holds its particle in the state as it is now, x, y, z in N: the opposite of springs, weight, pull,
+// air and hinges on the particle; what it is pinned to feels the opposite. At rest the sum over the pins is the weight of
+// the sheet. What tethers, strain limits, colliders and targets carry is not in it, nor what accelerates the particle.
+//
+// Takes the time of a particle; with TAUT_FEATURE_AIR, _HINGE or _MASS that of a pass over the cloth.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
+// TAUT_ERROR_NOT_PINNED.
+// Threads: changes the cloth (it settles what a change of pins does to the inertia).
+taut_result taut_cloth_pin_force(taut_cloth *cloth,
+                                 uint32_t particle,
+                                 float out_n[3]);
+
+// Copies the force of every pin (taut_cloth_pin_force) as three floats in N, in the order of the pinned particles, of which
+// there are taut_cloth_pin_count. out has out_size bytes; stride is the bytes from a pin to the next, at least 12. Bytes
+// between are left alone, and out need not be aligned.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
+// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
+// Threads: changes the cloth (it settles what a change of pins does to the inertia).
+taut_result taut_cloth_copy_pin_forces_f32(taut_cloth *cloth,
+                                           void *out,
+                                           size_t out_size,
+                                           size_t stride);
+
 // Bytes of a snapshot of the cloth as it is now. It grows with the pins and with pending forces.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
@@ -779,9 +955,10 @@ TAUT_API taut_result taut_cloth_snapshot_size(const taut_cloth *cloth, size_t *o
 // Threads: reads the cloth.
 TAUT_API taut_result taut_cloth_snapshot_size_max(const taut_cloth *cloth, size_t *out);
 
-// Writes the state (positions, velocities, pins, pending forces, step index) into out, which has out_size bytes and need not
-// be aligned. Every machine writes and reads the same bytes. Stiffness and definition are left out: they do not change by
-// stepping. out_written, which may be NULL, gets the number of bytes.
+// Writes the state (positions, velocities, pins, pending forces, step index, and what was changed of gravity, damping,
+// rest lengths and frame) into out, which has out_size bytes and need not
+// be aligned. Every machine writes and reads the same bytes. Stiffness, masses, mask and definition are left out: they do
+// not change by stepping. out_written, which may be NULL, gets the number of bytes.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, out_written), TAUT_ERROR_BAD_HANDLE,
 // TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
@@ -797,14 +974,16 @@ taut_result taut_cloth_snapshot(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_TRUNCATED,
 // TAUT_ERROR_WRONG_KIND, TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_FOREIGN, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM,
-// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NO_SUCH_PARTICLE. Then the cloth is as it was.
+// and, where a cloth did not write the bytes, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE, TAUT_ERROR_NEGATIVE,
+// TAUT_ERROR_DAMPING, TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT. Then the cloth is as it was.
 // Threads: changes the cloth.
 TAUT_API
 taut_result taut_cloth_restore(taut_cloth *cloth,
                                const void *data,
                                size_t size);
 
-// 64-bit hash of the state: two machines that play in lockstep compare it.
+// 64-bit hash of the state: two machines that play in lockstep compare it. The frame is not in it, so they may have their
+// worlds' origins elsewhere.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).

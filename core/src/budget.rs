@@ -10,6 +10,8 @@
 use crate::field::MAX_STIFFNESS;
 use crate::force::Springs;
 use crate::layout::{Layout, read, write};
+use crate::mask::cuts;
+use crate::masses::Body;
 use crate::math::{max, min, sqrt};
 use crate::{Budget, ClothDef, Grid};
 
@@ -42,15 +44,14 @@ pub struct BudgetReport {
 
 /// Writes the springs of a target field after the budget. `scale` is scratch of one plane.
 pub(crate) fn project(
-    grid: &Grid,
-    def: &ClothDef,
-    l: &Layout,
+    body: &Body<'_>,
     target: &[&mut [f32]; 4],
     inverse: &[f32],
     springs: &mut Springs<'_>,
     scale: &mut [f32],
 ) -> BudgetReport {
-    average(l, target, springs);
+    let (def, l) = (body.def, body.layout);
+    average(body, target, springs);
     let dt = def.dt_s();
     let allowed = 4.0 / (dt * dt) - 2.0 * def.damping_per_s / dt;
     let share = match def.budget {
@@ -61,7 +62,7 @@ pub(crate) fn project(
     for row in 0..l.rows {
         for column in 0..l.columns {
             let at = l.at(row, column);
-            let omega2 = bound(grid, l, at, inverse, springs) * read(inverse, at);
+            let omega2 = bound(body, at, inverse, springs) * read(inverse, at);
             worst = max(worst, omega2);
             let s = share * allowed / max(omega2, f32::MIN_POSITIVE);
             write(scale, at, min(s, 1.0));
@@ -76,13 +77,13 @@ pub(crate) fn project(
         *k *= min(read(scale, at), read(scale, other));
         after += f64::from(*k);
     });
-    let (mut free, mut inertia) = (0u32, 0.0f64);
-    let mass = f64::from(particle_mass(grid, def));
+    let (mut mass, mut inertia) = (0.0f64, 0.0f64);
     for row in 0..l.rows {
         for column in 0..l.columns {
-            let w = read(inverse, l.at(row, column));
+            let at = l.at(row, column);
+            let w = read(inverse, at);
             if w > 0.0 {
-                free += 1;
+                mass += f64::from(body.mass_at(at));
                 inertia += 1.0 / f64::from(w);
             }
         }
@@ -95,7 +96,7 @@ pub(crate) fn project(
         dt_s: dt,
         max_dt_s: max_dt,
         cut_fraction: if before > 0.0 { (1.0 - after / before) as f32 } else { 0.0 },
-        inertia_added: if free > 0 { (inertia / (f64::from(free) * mass) - 1.0) as f32 } else { 0.0 },
+        inertia_added: if mass > 0.0 { (inertia / mass - 1.0) as f32 } else { 0.0 },
     }
 }
 
@@ -115,11 +116,15 @@ fn channels(target: &[&mut [f32]; 4], at: usize) -> [f32; 4] {
     [warp * s, weft * s, shear * s, bend * s]
 }
 
-/// Each spring has the mean of its two ends.
-fn average(l: &Layout, target: &[&mut [f32]; 4], springs: &mut Springs<'_>) {
+/// Each spring has the mean of its two ends, and nothing where absent particles cut it.
+fn average(body: &Body<'_>, target: &[&mut [f32]; 4], springs: &mut Springs<'_>) {
     // channel of each spring plane: u weft, v warp, the diagonals shear, bend twice
     const CHANNEL: [usize; 6] = [1, 0, 2, 2, 3, 3];
-    each_spring(l, |at, other, plane| {
+    each_spring(body.layout, |at, other, plane| {
+        if cuts(body.mask, body.layout, at, other, plane) {
+            write(springs.plane(plane), at, 0.0);
+            return;
+        }
         let channel = CHANNEL.get(plane).copied().unwrap_or(0);
         let k = |at: usize| channels(target, at).get(channel).copied().unwrap_or(0.0);
         let mean = 0.5 * (k(at) + k(other));
@@ -175,8 +180,8 @@ fn each_spring(l: &Layout, mut visit: impl FnMut(usize, usize, usize)) {
 }
 
 /// lambda_max(B_i) of the flat sheet.
-fn bound(grid: &Grid, l: &Layout, at: usize, inverse: &[f32], k: &Springs<'_>) -> f32 {
-    let s = l.stride;
+fn bound(body: &Body<'_>, at: usize, inverse: &[f32], k: &Springs<'_>) -> f32 {
+    let s = body.layout.stride;
     let weighted = |plane: &[f32], place: usize, other: usize| {
         read(plane, place) * if read(inverse, other) > 0.0 { 2.0 } else { 1.0 }
     };
@@ -190,11 +195,32 @@ fn bound(grid: &Grid, l: &Layout, at: usize, inverse: &[f32], k: &Springs<'_>) -
         + weighted(k.bend_v, at - 2 * s, at - 2 * s);
     let right = weighted(k.right, at, at + s + 1) + weighted(k.right, at - s - 1, at - s - 1);
     let left = weighted(k.left, at, at + s - 1) + weighted(k.left, at - s + 1, at - s + 1);
-    let (u, v, d) = (grid.rest_u(), grid.rest_v(), grid.rest_diagonal());
-    let (cos, sin) = (u / d, v / d);
-    let a = along_u + (right + left) * (cos * cos);
-    let d = along_v + (right + left) * (sin * sin);
-    let b = (right - left) * (cos * sin);
+    let (u, v) = (body.grid.rest_u(), body.grid.rest_v());
+    let diagonal = body.grid.rest_diagonal();
+    if body.rest_scale == [1.0; 3] {
+        let (cos, sin) = (u / diagonal, v / diagonal);
+        let a = along_u + (right + left) * (cos * cos);
+        let d = along_v + (right + left) * (sin * sin);
+        return largest(a, d, (right - left) * (cos * sin));
+    }
+    // Two flat sheets: the one of the scaled lengths, without tension, and the one that is held at the lengths of the
+    // grid, in which a shortened spring with the factor s pulls, and so resists the ways across it with the share
+    // 1 - L0/l = 1 - s of its stiffness too: k (n n^T + t (1 - n n^T)).
+    let [scale_u, scale_v, scale_diagonal] = body.rest_scale;
+    let bound = |u: f32, v: f32, across: [f32; 3]| {
+        let d2 = u * u + v * v;
+        let (cos2, sin2, mixed) = (u * u / d2, v * v / d2, u * v / d2);
+        let [tu, tv, td] = across;
+        let a = along_u + tv * along_v + (right + left) * (cos2 + td * sin2);
+        let d = along_v + tu * along_u + (right + left) * (sin2 + td * cos2);
+        largest(a, d, (1.0 - td) * (right - left) * mixed)
+    };
+    let across = [scale_u, scale_v, scale_diagonal].map(|s| max(1.0 - s, 0.0));
+    max(bound(u * scale_u, v * scale_v, [0.0; 3]), bound(u, v, across))
+}
+
+/// The larger eigenvalue of the symmetric matrix of the diagonal a, d and b beside it.
+fn largest(a: f32, d: f32, b: f32) -> f32 {
     let half = 0.5 * (a - d);
     0.5 * (a + d) + sqrt(half * half + b * b)
 }

@@ -1,11 +1,20 @@
+use crate::ambient::Ambient;
 use crate::budget::{self, BudgetReport};
+use crate::colliders::Colliders;
 use crate::field::{self, FieldView};
 use crate::force::{Planes, Springs};
+use crate::frame::Pose;
+use crate::implicit::Implicit;
 use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
+use crate::levels::Levels;
+use crate::masses::Body;
 use crate::math::round16;
 use crate::pins::Pins;
 use crate::{ClothDef, Error, Grid, Vector3, in_default_environment, inertia};
 use crate::width::Supported;
+use crate::sleep::Sleep;
+use crate::targets::Targets;
+use crate::tethers::Tethers;
 
 /// Farthest that a position may be from the cloth's origin, in m.
 pub(crate) const REACH_M: f64 = 1e6;
@@ -29,7 +38,24 @@ pub struct Cloth<'a> {
     pub(crate) springs: Springs<'a>,
     /// Forces on particles for the next frame in N; empty without the feature.
     pub(crate) pull: [&'a mut [f32]; 3],
+    /// All forces beside springs and weight, for one substep; empty where the pull is all there is.
+    pub(crate) force: [&'a mut [f32]; 3],
+    /// Mass of each particle in kg; empty without the feature.
+    pub(crate) masses: &'a mut [f32],
+    /// 1 for a particle, 0 for an absent one; empty without the feature.
+    pub(crate) mask: &'a mut [f32],
     pub(crate) pins: Pins<'a>,
+    pub(crate) tethers: Tethers<'a>,
+    pub(crate) levels: Levels<'a>,
+    pub(crate) colliders: Colliders<'a>,
+    pub(crate) targets: Targets<'a>,
+    pub(crate) implicit: Implicit<'a>,
+    pub(crate) ambient: Ambient,
+    pub(crate) sleep: Sleep,
+    /// Where the local frame is in the world.
+    pub(crate) pose: Pose,
+    /// Digest of masses and mask.
+    pub(crate) matter: u64,
     pub(crate) step_index: u64,
     pub(crate) report: BudgetReport,
     pub(crate) has_stiffness: bool,
@@ -94,11 +120,23 @@ impl<'a> Cloth<'a> {
                 bend_v: take(b, when(layout.bend))?,
             },
             pull: [take(b, when(layout.pull))?, take(b, when(layout.pull))?, take(b, when(layout.pull))?],
+            force: [take(b, when(layout.force()))?, take(b, when(layout.force()))?, take(b, when(layout.force()))?],
+            masses: take(b, when(layout.mass))?,
+            mask: take(b, when(layout.mask))?,
             pins: Pins {
                 numbers: take(b, round16(PIN_NUMBERS * layout.max_pins))?,
                 count: 0,
                 capacity: layout.max_pins,
             },
+            tethers: Tethers::new(&layout, b)?,
+            levels: Levels::new(&layout, b)?,
+            colliders: Colliders::new(&layout, b)?,
+            targets: Targets::new(&layout, b)?,
+            implicit: Implicit::new(&layout, b)?,
+            ambient: Ambient::new(def),
+            sleep: Sleep::new(def),
+            pose: Pose::new(def),
+            matter: 0,
             step_index: 0,
             report: BudgetReport::default(),
             has_stiffness: false,
@@ -107,11 +145,21 @@ impl<'a> Cloth<'a> {
             carry: take(b, layout.carry())?,
             width: Supported::best(),
         };
+        for row in 0..layout.rows {
+            let at = layout.row(row);
+            for (plane, value) in [(&mut cloth.masses, cloth.mass), (&mut cloth.mask, 1.0)] {
+                if let Some(row) = plane.get_mut(at..at + layout.columns) {
+                    row.fill(value);
+                }
+            }
+        }
+        cloth.matter = cloth.digest_of_matter();
         cloth.start_again();
         Ok(cloth)
     }
 
-    /// Back to the start: flat, at rest, nothing pinned, step 0. The stiffness stays.
+    /// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
+    /// Stiffness, masses and mask stay.
     pub fn reset(&mut self) {
         in_default_environment(|| self.start_again());
     }
@@ -133,8 +181,14 @@ impl<'a> Cloth<'a> {
         }
         self.has_pull = false;
         self.pins.count = 0;
+        self.ambient = Ambient::new(&self.def);
+        self.colliders.numbers.fill(0.0);
+        self.targets.planes.fill(0.0);
+        self.implicit.planes.fill(0.0);
+        self.pose = Pose::new(&self.def);
         self.step_index = 0;
         self.stale = true;
+        self.wake();
     }
 
     /// The grid.
@@ -157,7 +211,7 @@ impl<'a> Cloth<'a> {
         self.has_stiffness
     }
 
-    /// Mass of a particle in kg.
+    /// A particle's share of the sheet's mass in kg, which is its mass where it has none of its own.
     pub fn particle_mass_kg(&self) -> f32 {
         self.mass
     }
@@ -203,6 +257,7 @@ impl<'a> Cloth<'a> {
         }
         self.has_stiffness = true;
         self.stale = true;
+        self.wake();
     }
 
     /// What the budget makes of the stiffness with the pins as they are.
@@ -226,12 +281,23 @@ impl<'a> Cloth<'a> {
 
     fn compute_springs(&mut self, keep_momentum: bool) {
         let l = self.layout;
+        // the damping may have been changed while running
+        let def = ClothDef { damping_per_s: self.ambient.damping(), ..self.def };
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
         copy(former, self.inverse);
         let (pins, layout) = (&self.pins, &self.layout);
         let pinned = pins.iter().filter_map(|p| layout.place(p.particle).ok());
-        inertia::inverse_masses(&self.grid, &self.def, &l, self.mass, pinned, self.inverse, scratch);
+        let body = Body {
+            grid: &self.grid,
+            def: &def,
+            layout,
+            mass: self.mass,
+            masses: self.masses,
+            mask: self.mask,
+            rest_scale: self.ambient.rest_scale(),
+        };
+        inertia::inverse_masses(&body, pinned, self.inverse, scratch);
         if keep_momentum {
             for row in 0..l.rows {
                 for column in 0..l.columns {
@@ -246,8 +312,13 @@ impl<'a> Cloth<'a> {
                 }
             }
         }
-        self.report =
-            budget::project(&self.grid, &self.def, &l, &self.target, self.inverse, &mut self.springs, scratch);
+        self.report = budget::project(&body, &self.target, self.inverse, &mut self.springs, scratch);
+        if l.tethers {
+            self.attach_tethers();
+        }
+        if l.levels {
+            self.prepare_levels();
+        }
         self.stale = false;
     }
 
@@ -257,7 +328,7 @@ impl<'a> Cloth<'a> {
         PositionView {
             xyz: [&*self.x.x, &*self.x.y, &*self.x.z].map(|p| p.get(from..).unwrap_or(&[])),
             row_stride: self.layout.stride,
-            origin_m: self.def.origin_m,
+            origin_m: self.pose.position,
         }
     }
 
@@ -275,7 +346,7 @@ impl<'a> Cloth<'a> {
     /// Position of a particle in the world in m. Error: [`Error::NoSuchParticle`].
     pub fn world_position(&self, particle: usize) -> Result<Vector3<f64>, Error> {
         let local = self.position(particle)?;
-        Ok(in_default_environment(|| local.cast::<f64>() + Vector3::from(self.def.origin_m)))
+        Ok(in_default_environment(|| local.cast::<f64>() + Vector3::from(self.pose.position)))
     }
 
     /// Puts a particle somewhere, in the local frame in m, at rest; a pinned one with its pin.
@@ -290,32 +361,34 @@ impl<'a> Cloth<'a> {
         if let Ok(place) = self.pins.find(particle) {
             self.pins.set(place, crate::pins::Pin { particle, from: p, to: p });
         }
+        self.wake();
         Ok(())
     }
 
     /// Sets the velocity of a particle in m/s; a pinned one keeps that of its pin. A change of pins before it is settled
     /// first, so that it does not rescale this velocity.
     ///
-    /// Errors: [`Error::NoSuchParticle`], [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e6 m/s).
+    /// Errors: [`Error::NoSuchParticle`], [`Error::Absent`], [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e6 m/s).
     pub fn set_velocity(&mut self, particle: usize, v_m_s: Vector3<f32>) -> Result<(), Error> {
-        let at = self.layout.place(particle)?;
+        let at = self.present_place(particle)?;
         check_reach(v_m_s.cast())?;
         if self.pins.find(particle).is_err() {
             self.refresh(true);
             self.set_velocity_at(at, [v_m_s.x, v_m_s.y, v_m_s.z]);
+            self.wake();
         }
         Ok(())
     }
 
     /// Adds a force on a particle in N, which acts during the next frame (F_pull of eq. 2).
     ///
-    /// Errors: [`Error::FeatureOff`] without [`crate::Features::PULL`], [`Error::NoSuchParticle`], [`Error::NotFinite`],
-    /// [`Error::OutOfRange`] (above 1e9 N).
+    /// Errors: [`Error::FeatureOff`] without [`crate::Features::PULL`], [`Error::NoSuchParticle`], [`Error::Absent`],
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e9 N).
     pub fn add_force(&mut self, particle: usize, force_n: Vector3<f32>) -> Result<(), Error> {
         if !self.layout.pull {
             return Err(Error::FeatureOff);
         }
-        let at = self.layout.place(particle)?;
+        let at = self.present_place(particle)?;
         if !force_n.iter().all(|f| f.is_finite()) {
             return Err(Error::NotFinite);
         }
@@ -329,6 +402,7 @@ impl<'a> Cloth<'a> {
             }
         });
         self.has_pull = true;
+        self.wake();
         Ok(())
     }
 
@@ -372,7 +446,7 @@ impl<'a> Cloth<'a> {
     /// World to local, refused where f32 could not hold it well.
     pub(crate) fn to_local(&self, world_m: Vector3<f64>) -> Result<[f32; 3], Error> {
         in_default_environment(|| {
-            let d = world_m - Vector3::from(self.def.origin_m);
+            let d = world_m - Vector3::from(self.pose.position);
             check_reach(d)?;
             Ok([d.x as f32, d.y as f32, d.z as f32])
         })

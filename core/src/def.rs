@@ -21,11 +21,45 @@ impl Features {
     pub const NONE: Features = Features(0);
     /// Forces on single particles ([`crate::Cloth::add_force`]).
     pub const PULL: Features = Features(1);
+    /// Air: drag, lift and wind ([`crate::Cloth::set_air`]).
+    pub const AIR: Features = Features(2);
+    /// Hinge bending of the rigidity [`ClothDef::hinge_rigidity_n_m`].
+    pub const HINGE: Features = Features(4);
+    /// Tethers to the nearest pins, with the slack [`ClothDef::tether_slack`].
+    pub const TETHERS: Features = Features(8);
+    /// Strain limit of [`ClothDef::strain_limit`] (Provot 1995).
+    pub const STRAIN_LIMIT: Features = Features(16);
+    /// Strain limit of [`ClothDef::strain_limit`] on levels, from coarse to fine.
+    pub const LEVELS: Features = Features(32);
+    /// Colliders, up to [`crate::MAX_COLLIDERS`].
+    pub const COLLIDERS: Features = Features(64);
+    /// A skinned target of each particle with a largest distance and a backstop.
+    pub const TARGETS: Features = Features(128);
+    /// A mass of its own for each particle ([`crate::Cloth::set_masses`]).
+    pub const MASS: Features = Features(256);
+    /// Absent particles ([`crate::Cloth::set_mask`]).
+    pub const MASK: Features = Features(512);
+    /// Working memory of an implicit solver; [`ClothDef::solver`] chooses it.
+    pub const IMPLICIT: Features = Features(1024);
+    /// Every feature.
+    pub const ALL: Features = Features(2047);
 
     /// Whether every feature of `other` is on.
     pub const fn contains(self, other: Features) -> bool {
         self.0 & other.0 == other.0
     }
+}
+
+/// How a frame is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Solver {
+    /// Symplectic Euler (eq. 17): explicit, cheapest; the stiffness is cut to the budget.
+    SymplecticEuler = 0,
+    /// Implicit Euler with conjugate gradients: the stiffness as it is, at any step; damps motion.
+    ImplicitEuler = 1,
+    /// The second-order backward difference formula with conjugate gradients: as `ImplicitEuler`, with less damping.
+    Bdf2 = 2,
 }
 
 /// What a cloth is made of beside its grid. SI units; no axis is "up".
@@ -56,6 +90,22 @@ pub struct ClothDef {
     pub inertia_max: f32,
     /// Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256.
     pub max_pins: u32,
+    /// The solver; the implicit ones need [`Features::IMPLICIT`]. Default `SymplecticEuler`.
+    pub solver: Solver,
+    /// Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    pub cg_iterations: u32,
+    /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
+    /// 5 %). Default 0.
+    pub tether_slack: [f32; 3],
+    /// Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    pub strain_limit: [f32; 3],
+    /// Passes of the strain limit in each substep, 1 to 64. Default 2.
+    pub strain_passes: u32,
+    /// Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
+    pub hinge_rigidity_n_m: f32,
+    /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to 1e3;
+    /// 0 = never. Default 0.
+    pub sleep_speed_m_s: f32,
     /// Optional parts. Default none.
     pub features: Features,
     /// World position of the local frame in m. Default 0.
@@ -80,6 +130,13 @@ impl Default for ClothDef {
             inertia_radius_m: 0.0,
             inertia_max: 32.0,
             max_pins: 256,
+            solver: Solver::SymplecticEuler,
+            cg_iterations: 10,
+            tether_slack: [0.0; 3],
+            strain_limit: [0.05; 3],
+            strain_passes: 2,
+            hinge_rigidity_n_m: 1e-5,
+            sleep_speed_m_s: 0.0,
             features: Features::NONE,
             origin_m: [0.0; 3],
             u_axis: [1.0, 0.0, 0.0],
@@ -100,7 +157,7 @@ impl ClothDef {
     }
 
     /// Checks every field. Errors: [`Error::NotFinite`], [`Error::Negative`], [`Error::StepSize`], [`Error::Damping`],
-    /// [`Error::OutOfRange`].
+    /// [`Error::FeatureOff`] (an implicit solver without its memory), [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         let scalars = [
             self.rate_hz,
@@ -109,8 +166,10 @@ impl ClothDef {
             self.speed_limit,
             self.inertia_radius_m,
             self.inertia_max,
+            self.hinge_rigidity_n_m,
+            self.sleep_speed_m_s,
         ];
-        let vectors = [self.gravity_m_s2, self.u_axis, self.v_axis];
+        let vectors = [self.gravity_m_s2, self.u_axis, self.v_axis, self.tether_slack, self.strain_limit];
         if !scalars.iter().chain(vectors.as_flattened()).all(|x| x.is_finite())
             || !self.origin_m.iter().all(|x| x.is_finite())
         {
@@ -119,11 +178,22 @@ impl ClothDef {
         if !(1.0..=10_000.0).contains(&self.rate_hz) || !(1..=1024).contains(&self.substeps) {
             return Err(Error::StepSize);
         }
-        if self.damping_per_s < 0.0 || self.speed_limit < 0.0 || self.inertia_radius_m < 0.0 {
+        let scalars = [
+            self.damping_per_s,
+            self.speed_limit,
+            self.inertia_radius_m,
+            self.hinge_rigidity_n_m,
+            self.sleep_speed_m_s,
+        ];
+        let limits = [self.tether_slack, self.strain_limit];
+        if scalars.iter().chain(limits.as_flattened()).any(|x| *x < 0.0) {
             return Err(Error::Negative);
         }
         if self.damping_per_s * self.dt_s() >= 1.0 {
             return Err(Error::Damping);
+        }
+        if self.solver != Solver::SymplecticEuler && !self.features.contains(Features::IMPLICIT) {
+            return Err(Error::FeatureOff);
         }
         let axis = |a: &[f32; 3]| (1e-3..=1e3).contains(&length(a));
         if !(1e-6..=1e6).contains(&self.density_kg_m2)
@@ -132,7 +202,12 @@ impl ClothDef {
             || self.speed_limit > 1e6
             || (self.speed_limit > 0.0 && self.speed_limit < 1e-6)
             || length(&self.gravity_m_s2) > 1e4
-            || self.features.0 > Features::PULL.0
+            || self.features.0 > Features::ALL.0
+            || limits.as_flattened().iter().any(|x| *x > 10.0)
+            || !(1..=1000).contains(&self.cg_iterations)
+            || !(1..=64).contains(&self.strain_passes)
+            || self.hinge_rigidity_n_m > 1e6
+            || self.sleep_speed_m_s > 1e3
             || !axis(&self.u_axis)
             || !axis(&self.v_axis)
             || self.origin_m.iter().any(|x| x.abs() > 1e12)
@@ -149,6 +224,10 @@ impl ClothDef {
         h.words(&self.gravity_m_s2.map(f));
         h.words(&[self.compression_limit as u32, self.budget as u32, f(self.inertia_radius_m), f(self.inertia_max)]);
         h.words(&[self.features.0, self.max_pins]);
+        h.words(&[self.solver as u32, self.cg_iterations, self.strain_passes]);
+        h.words(&[f(self.hinge_rigidity_n_m), f(self.sleep_speed_m_s)]);
+        h.words(&self.tether_slack.map(f));
+        h.words(&self.strain_limit.map(f));
     }
 }
 
@@ -175,6 +254,7 @@ mod tests {
         assert_eq!(err(ClothDef { gravity_m_s2: [0.0, f32::NAN, 0.0], ..d }), Error::NotFinite);
         assert_eq!(err(ClothDef { u_axis: [0.0; 3], ..d }), Error::OutOfRange);
         assert_eq!(err(ClothDef { origin_m: [f64::NAN, 0.0, 0.0], ..d }), Error::NotFinite);
-        assert_eq!(err(ClothDef { features: Features(2), ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { features: Features(2048), ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { solver: Solver::Bdf2, ..d }), Error::FeatureOff);
     }
 }

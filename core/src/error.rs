@@ -55,11 +55,13 @@ pub enum Error {
     VersionMismatch = -23,
     /// This machine lacks the vector width.
     UnsupportedWidth = -24,
+    /// The particle is absent: the mask says so.
+    Absent = -25,
 }
 
 impl Error {
     /// Every error, in the order of the codes.
-    pub const ALL: [Error; 24] = [
+    pub const ALL: [Error; 25] = [
         Error::NullPointer,
         Error::Misaligned,
         Error::BlockTooSmall,
@@ -84,6 +86,7 @@ impl Error {
         Error::Damping,
         Error::VersionMismatch,
         Error::UnsupportedWidth,
+        Error::Absent,
     ];
 
     /// The C result code: negative.
@@ -118,6 +121,7 @@ impl Error {
             Error::Damping => "damping times dt must stay below 1",
             Error::VersionMismatch => "the caller was compiled against another version",
             Error::UnsupportedWidth => "this machine lacks the vector width",
+            Error::Absent => "the particle is absent: the mask says so",
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::layout::{CARRY_ROWS, Layout, span};
 use crate::simd::{Pass, Vector};
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
-const TINY: f32 = 1e-30;
+pub(crate) const TINY: f32 = 1e-30;
 
 /// The springs that start at each particle, in N/m, after the budget.
 pub(crate) struct Springs<'a> {

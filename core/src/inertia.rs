@@ -4,34 +4,49 @@
 //! buys stiffness there at the same step. The weight stays m g, so the rest shape is that of the stiffer cloth.
 
 use crate::layout::{Layout, read, write};
+use crate::mask::is_absent;
+use crate::masses::Body;
 use crate::math::{max, min, sqrt};
 use crate::{ClothDef, Grid};
 
-/// Writes 1/M of every particle, 0 for pinned ones.
+/// Writes 1/M of every particle, 0 for pinned and absent ones.
 ///
 /// `distance` is scratch of one plane. The squared distance in the rest grid is found exactly: first down and up each
 /// column, then along each row (only as far as the radius reaches). Cost: O(particles x columns within the radius).
 pub(crate) fn inverse_masses(
-    grid: &Grid,
-    def: &ClothDef,
-    l: &Layout,
-    mass: f32,
+    body: &Body<'_>,
     pinned: impl Iterator<Item = usize>,
     inverse: &mut [f32],
     distance: &mut [f32],
 ) {
-    let light = 1.0 / mass;
+    let (grid, def, l) = (body.grid, body.def, body.layout);
     for row in 0..l.rows {
         for column in 0..l.columns {
-            write(inverse, l.at(row, column), light);
+            let at = l.at(row, column);
+            write(inverse, at, 1.0 / body.mass_at(at));
         }
     }
     for at in pinned {
         write(inverse, at, 0.0);
     }
-    if !def.has_inertia() {
-        return;
+    if def.has_inertia() {
+        add_inertia(grid, def, l, inverse, distance);
     }
+    if l.mask {
+        // only now: they are no pins that the inertia field is about
+        for row in 0..l.rows {
+            for column in 0..l.columns {
+                let at = l.at(row, column);
+                if is_absent(body.mask, at) {
+                    write(inverse, at, 0.0);
+                }
+            }
+        }
+    }
+}
+
+/// Divides 1/M by q; pinned particles are those with 1/M = 0.
+fn add_inertia(grid: &Grid, def: &ClothDef, l: &Layout, inverse: &mut [f32], distance: &mut [f32]) {
     // `distance` along the column, in m; infinite where no pin stands in it
     for column in 0..l.columns {
         let mut d = f32::INFINITY;
@@ -72,7 +87,8 @@ pub(crate) fn inverse_masses(
                 }
             }
             let q = min(max(def.inertia_radius_m / sqrt(max(best, 1e-12)), 1.0), def.inertia_max);
-            write(inverse, at, light / q);
+            let heavy = read(inverse, at) / q;
+            write(inverse, at, heavy);
         }
     }
 }

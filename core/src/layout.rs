@@ -1,4 +1,9 @@
-use crate::{ClothDef, Error, Features, Grid, math::round16};
+use crate::colliders::{Colliders, MAX_COLLIDERS};
+use crate::implicit::Implicit;
+use crate::levels::Levels;
+use crate::targets::Targets;
+use crate::tethers::Tethers;
+use crate::{ClothDef, Error, Features, Grid, Solver, math::round16};
 
 /// Numbers of a pin: index, from (3), to (3).
 pub(crate) const PIN_NUMBERS: usize = 7;
@@ -20,7 +25,18 @@ pub(crate) struct Layout {
     pub shear: bool,
     pub bend: bool,
     pub pull: bool,
+    pub air: bool,
+    pub hinge: bool,
+    pub tethers: bool,
+    pub strain_limit: bool,
+    pub levels: bool,
+    pub targets: bool,
+    pub mass: bool,
+    pub mask: bool,
+    pub implicit: bool,
+    pub bdf2: bool,
     pub max_pins: usize,
+    pub max_colliders: usize,
 }
 
 impl Layout {
@@ -28,6 +44,7 @@ impl Layout {
         let (rows, columns) = (grid.rows(), grid.columns());
         let width = round16(columns);
         let stride = width + 16;
+        let on = |f: Features| def.features.contains(f);
         Layout {
             rows,
             columns,
@@ -36,9 +53,20 @@ impl Layout {
             plane: stride * (rows + 4) + 32,
             shear: grid.has_shear(),
             bend: grid.has_bend(),
-            pull: def.features.contains(Features::PULL),
+            pull: on(Features::PULL),
+            air: on(Features::AIR),
+            hinge: on(Features::HINGE),
+            tethers: on(Features::TETHERS),
+            strain_limit: on(Features::STRAIN_LIMIT),
+            levels: on(Features::LEVELS),
+            targets: on(Features::TARGETS),
+            mass: on(Features::MASS),
+            mask: on(Features::MASK),
+            implicit: on(Features::IMPLICIT),
+            bdf2: def.solver == Solver::Bdf2,
             // the default asks for more than a small grid has particles
             max_pins: (def.max_pins as usize).min(rows * columns),
+            max_colliders: if on(Features::COLLIDERS) { MAX_COLLIDERS } else { 0 },
         }
     }
 
@@ -51,17 +79,36 @@ impl Layout {
         2 + 2 * usize::from(self.shear) + 2 * usize::from(self.bend)
     }
 
-    /// f32 numbers of the whole block.
-    pub fn numbers(&self) -> usize {
-        // positions 3, velocities 3, the last good state 6, 1/M 1
-        let planes = 13 + self.channels() + self.spring_planes() + if self.pull { 3 } else { 0 };
-        planes * self.plane + round16(PIN_NUMBERS * self.max_pins) + self.carry()
+    /// Whether there are forces beside springs, weight and pull.
+    pub fn force(&self) -> bool {
+        self.air || self.hinge || self.mass
     }
 
     /// Numbers of the rows of spring forces that the sweep hands on ([`crate::force`]): 3 of the springs along v, 9 of the
     /// diagonals, 6 of the bend springs along v.
     pub fn carry(&self) -> usize {
         self.stride * CARRY_ROWS
+    }
+
+    /// f32 numbers of the whole block.
+    pub fn numbers(&self) -> usize {
+        // positions 3, velocities 3, the last good state 6, 1/M 1
+        let when = |on: bool, planes: usize| if on { planes } else { 0 };
+        let planes = 13
+            + self.channels()
+            + self.spring_planes()
+            + when(self.pull, 3)
+            + when(self.force(), 3)
+            + when(self.mass, 1)
+            + when(self.mask, 1);
+        planes * self.plane
+            + round16(PIN_NUMBERS * self.max_pins)
+            + Tethers::numbers(self)
+            + Levels::numbers(self)
+            + Colliders::numbers(self)
+            + Targets::numbers(self)
+            + Implicit::numbers(self)
+            + self.carry()
     }
 
     /// Place of column 0 of a row in a plane.

@@ -25,36 +25,53 @@
 #![no_std]
 #![deny(unsafe_code)]
 
+mod air;
+mod ambient;
 pub mod baked;
 mod bounds;
 mod budget;
 mod cloth;
+mod colliders;
 mod def;
 mod environment;
 mod error;
 pub mod field;
 mod force;
+mod frame;
 mod grid;
 mod hash;
+mod hinge;
+mod implicit;
 mod inertia;
 mod layout;
+mod levels;
+mod mask;
+mod masses;
 mod math;
 mod mesh;
 pub mod noise;
 mod normals;
+mod passes;
+mod pin_force;
 mod pins;
 mod simd;
+mod sleep;
 mod snapshot;
 mod step;
 mod strain;
+mod strain_limit;
+mod targets;
+mod tethers;
 mod width;
 
 pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, TUNED_SHARE};
 pub use bounds::Bounds;
 pub use cloth::{Cloth, PositionView};
-pub use def::{Budget, ClothDef, Features};
 pub use environment::in_default_environment;
+pub use colliders::MAX_COLLIDERS;
+pub use def::{Budget, ClothDef, Features, Solver};
 pub use error::Error;
+pub use frame::Frame;
 pub use grid::{Families, Grid, GridDef};
 pub use hash::Hash64;
 pub use math::sqrt;

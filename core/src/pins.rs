@@ -35,6 +35,27 @@ impl Pins<'_> {
         (0..self.count).map(|i| self.get(i))
     }
 
+    fn remove(&mut self, place: usize) {
+        for i in place + 1..self.count {
+            let next = self.get(i);
+            self.set(i - 1, next);
+        }
+        self.count -= 1;
+    }
+
+    /// Removes the pins of all particles that `keep` does not want.
+    pub fn keep(&mut self, keep: impl Fn(usize) -> bool) {
+        let mut kept = 0;
+        for i in 0..self.count {
+            let pin = self.get(i);
+            if keep(pin.particle) {
+                self.set(kept, pin);
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+
     /// Ok: the place of the particle's pin. Err: the place where it would be.
     pub fn find(&self, particle: usize) -> Result<usize, usize> {
         let (mut low, mut high) = (0, self.count);
@@ -57,9 +78,9 @@ impl Pins<'_> {
 impl Cloth<'_> {
     /// Pins a particle where it is. A particle that is pinned already stays as it is.
     ///
-    /// Errors: [`Error::NoSuchParticle`], [`Error::TooManyPins`].
+    /// Errors: [`Error::NoSuchParticle`], [`Error::Absent`], [`Error::TooManyPins`].
     pub fn pin(&mut self, particle: usize) -> Result<(), Error> {
-        let at = self.layout.place(particle)?;
+        let at = self.present_place(particle)?;
         let Err(place) = self.pins.find(particle) else {
             return Ok(());
         };
@@ -75,6 +96,7 @@ impl Cloth<'_> {
         self.pins.set(place, Pin { particle, from: here, to: here });
         self.set_velocity_at(at, [0.0; 3]);
         self.stale = true;
+        self.wake();
         Ok(())
     }
 
@@ -90,7 +112,10 @@ impl Cloth<'_> {
         };
         let to = self.to_local(world_m)?;
         let pin = self.pins.get(place);
-        self.pins.set(place, Pin { to, ..pin });
+        if to != pin.to {
+            self.pins.set(place, Pin { to, ..pin });
+            self.wake();
+        }
         Ok(())
     }
 
@@ -102,12 +127,9 @@ impl Cloth<'_> {
         let Ok(place) = self.pins.find(particle) else {
             return Err(Error::NotPinned);
         };
-        for i in place + 1..self.pins.count {
-            let next = self.pins.get(i);
-            self.pins.set(i - 1, next);
-        }
-        self.pins.count -= 1;
+        self.pins.remove(place);
         self.stale = true;
+        self.wake();
         Ok(())
     }
 

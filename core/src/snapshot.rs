@@ -4,37 +4,65 @@
 //! |---|---|
 //! | 0..8 | `TAUTSNAP` |
 //! | 8..12, 12..16 | version 1, number of bytes |
-//! | 16..24 | digest of grid and definition |
+//! | 16..24 | digest of grid, definition, masses and mask |
 //! | 24..32 | step index |
-//! | 32..36, 36..40 | number of pins, 1 if forces are pending |
+//! | 32..36, 36..40 | number of pins, bits: 1 if forces are pending, 2 if the surroundings (gravity, damping, air, rest lengths) were changed, 4 if the frame was moved |
+//! | then | the frame, if it was moved: position and rotation (x, y, z, w), seven f64 |
 //! | then | x, y, z, vx, vy, vz: f32 `[rows][columns]` each |
 //! | then | the pending forces, three times f32 `[rows][columns]`, if any |
+//! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2, frames of quiet if the cloth may sleep |
 //! | then | each pin: particle as f32, from x y z, to x y z |
 //! | last 8 | hash of all bytes before |
 //!
-//! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins) and the origin.
+//! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins), masses and mask.
+//!
+//! The frame is in a snapshot (without it the next one would be a leap), but not in the hash: two machines that shift their
+//! worlds differently agree on the local state.
 
+use crate::ambient::Ambient;
+use crate::frame::Pose;
 use crate::layout::{PIN_NUMBERS, read};
+use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
 const VERSION: u32 = 1;
 const HEADER: usize = 40;
+/// Bits of the flags.
+const PULL: u32 = 1;
+const AMBIENT: u32 = 2;
+const FRAME: u32 = 4;
+/// Bytes of the frame.
+const FRAME_BYTES: usize = 56;
 
 impl Cloth<'_> {
     /// Bytes of a snapshot of the cloth as it is now.
     pub fn snapshot_size(&self) -> usize {
-        self.size_of_snapshot(self.pins.count, self.has_pull)
+        self.size_of_snapshot(self.pins.count, self.flags())
     }
 
     /// Bytes that every snapshot of this cloth fits in.
     pub fn snapshot_size_max(&self) -> usize {
-        self.size_of_snapshot(self.pins.capacity, self.layout.pull)
+        self.size_of_snapshot(self.pins.capacity, FRAME | AMBIENT | if self.layout.pull { PULL } else { 0 })
     }
 
-    fn size_of_snapshot(&self, pins: usize, pull: bool) -> usize {
-        let planes = if pull { 9 } else { 6 };
-        HEADER + 4 * (planes * self.grid.particles() + PIN_NUMBERS * pins) + 8
+    fn flags(&self) -> u32 {
+        (if self.has_pull { PULL } else { 0 })
+            | (if self.ambient.changed { AMBIENT } else { 0 })
+            | (if self.pose != Pose::new(&self.def) { FRAME } else { 0 })
+    }
+
+    fn size_of_snapshot(&self, pins: usize, flags: u32) -> usize {
+        let planes = if flags & PULL != 0 { 9 } else { 6 };
+        let ambient = if flags & AMBIENT != 0 { self.ambient.numbers.len() } else { 0 };
+        let parts: usize = self.parts().iter().map(|p| p.len()).sum();
+        let frame = if flags & FRAME != 0 { FRAME_BYTES } else { 0 };
+        HEADER + frame + 4 * (planes * self.grid.particles() + ambient + parts + PIN_NUMBERS * pins) + 8
+    }
+
+    /// The state of the optional parts, empty where they are off.
+    fn parts(&self) -> [&[f32]; 4] {
+        [self.colliders.numbers, self.targets.planes, self.implicit.state(), self.sleep.state()]
     }
 
     fn digest(&self) -> u64 {
@@ -42,6 +70,9 @@ impl Cloth<'_> {
         let g = self.grid.digest();
         h.words(&[g as u32, (g >> 32) as u32]);
         self.def.digest(&mut h);
+        if self.layout.mass || self.layout.mask {
+            h.words(&[self.matter as u32, (self.matter >> 32) as u32]);
+        }
         h.finish()
     }
 
@@ -53,6 +84,14 @@ impl Cloth<'_> {
         let mut h = Hash64::new();
         h.words(&[self.step_index as u32, (self.step_index >> 32) as u32, self.pins.count as u32]);
         self.each_row(|row| h.floats(row));
+        if self.ambient.changed {
+            h.floats(&self.ambient.numbers);
+        }
+        for part in self.parts() {
+            if !part.is_empty() {
+                h.floats(part);
+            }
+        }
         h.floats(self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         h.finish()
     }
@@ -84,8 +123,19 @@ impl Cloth<'_> {
         put(&mut rest, &self.digest().to_le_bytes());
         put(&mut rest, &self.step_index.to_le_bytes());
         put(&mut rest, &(self.pins.count as u32).to_le_bytes());
-        put(&mut rest, &u32::from(self.has_pull).to_le_bytes());
+        put(&mut rest, &self.flags().to_le_bytes());
+        if self.flags() & FRAME != 0 {
+            for number in self.pose.numbers() {
+                put(&mut rest, &number.to_le_bytes());
+            }
+        }
         self.each_row(|row| put_floats(&mut rest, row));
+        if self.ambient.changed {
+            put_floats(&mut rest, &self.ambient.numbers);
+        }
+        for part in self.parts() {
+            put_floats(&mut rest, part);
+        }
         put_floats(&mut rest, self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         let mut h = Hash64::new();
         h.bytes(body);
@@ -96,7 +146,9 @@ impl Cloth<'_> {
     /// Reads a state back. The whole snapshot is checked before anything is changed.
     ///
     /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::Foreign`] (another
-    /// grid or definition), [`Error::Checksum`], [`Error::Shape`].
+    /// grid or definition, other masses, another mask), [`Error::Checksum`], [`Error::Shape`]; for bytes that no cloth wrote
+    /// [`Error::NotFinite`], [`Error::OutOfRange`], [`Error::Negative`], [`Error::Damping`], [`Error::NoSuchParticle`],
+    /// [`Error::Absent`].
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
         in_default_environment(|| self.take_over(bytes))
     }
@@ -111,13 +163,15 @@ impl Cloth<'_> {
         }
         let size = u32_at(header, 12) as usize;
         let bytes = bytes.get(..size).ok_or(Error::Truncated)?;
-        let (pins, pull) = (u32_at(header, 32) as usize, u32_at(header, 36));
+        let (pins, flags) = (u32_at(header, 32) as usize, u32_at(header, 36));
+        let pull = flags & PULL != 0;
         if u64_at(header, 16) != self.digest() {
             return Err(Error::Foreign);
         }
         if pins > self.pins.capacity
-            || pull > u32::from(self.layout.pull)
-            || size != self.size_of_snapshot(pins, pull == 1)
+            || flags > PULL | AMBIENT | FRAME
+            || (pull && !self.layout.pull)
+            || size != self.size_of_snapshot(pins, flags)
         {
             return Err(Error::Shape);
         }
@@ -127,13 +181,29 @@ impl Cloth<'_> {
         if u64_at(tail, 0) != h.finish() {
             return Err(Error::Checksum);
         }
-        let (numbers, _) = body.get(HEADER..).unwrap_or(&[]).as_chunks::<4>();
+        let mut from = HEADER;
+        let mut pose = Pose::new(&self.def);
+        if flags & FRAME != 0 {
+            let number = |i: usize| f64::from_bits(u64_at(body, HEADER + 8 * i));
+            pose = Pose::from_numbers([0, 1, 2, 3, 4, 5, 6].map(number)).checked()?;
+            from += FRAME_BYTES;
+        }
+        let (numbers, _) = body.get(from..).unwrap_or(&[]).as_chunks::<4>();
         let number = |i: usize| numbers.get(i).map_or(0.0, |b| f32::from_le_bytes(*b));
         self.check_numbers(&number, numbers.len(), pins)?;
+        let mut ambient = Ambient::new(&self.def);
+        if flags & AMBIENT != 0 {
+            let from = self.grid.particles() * if pull { 9 } else { 6 };
+            for (i, to) in ambient.numbers.iter_mut().enumerate() {
+                *to = number(from + i);
+            }
+            ambient.changed = true;
+            ambient.check(&self.def)?;
+        }
 
-        let (l, n) = (self.layout, self.grid.particles());
+        let l = self.layout;
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
-        let pull_planes = if pull == 1 { self.pull.as_mut_slice() } else { &mut [] };
+        let pull_planes = if pull { self.pull.as_mut_slice() } else { &mut [] };
         let mut next = 0;
         for plane in planes.into_iter().chain(pull_planes.iter_mut().map(|p| &mut **p)) {
             for row in 0..l.rows {
@@ -145,22 +215,41 @@ impl Cloth<'_> {
                 next += l.columns;
             }
         }
+        if flags & AMBIENT != 0 {
+            next += ambient.numbers.len();
+        }
+        // the budget depends on them
+        self.stale |= self.ambient.damping() != ambient.damping() || self.ambient.rest_scale() != ambient.rest_scale();
+        self.ambient = ambient;
+        self.pose = pose;
+        let parts = [
+            &mut *self.colliders.numbers,
+            &mut *self.targets.planes,
+            self.implicit.state_mut(),
+            self.sleep.state_mut(),
+        ];
+        for part in parts {
+            for to in part {
+                *to = number(next);
+                next += 1;
+            }
+        }
         let first = numbers.len() - PIN_NUMBERS * pins;
+        debug_assert_eq!(next, first);
         let same = pins == self.pins.count
             && (0..pins).all(|i| read(self.pins.numbers, i * PIN_NUMBERS) == number(first + i * PIN_NUMBERS));
         for (i, to) in self.pins.numbers.iter_mut().enumerate().take(PIN_NUMBERS * pins) {
             *to = number(first + i);
         }
         self.pins.count = pins;
-        if self.has_pull && pull == 0 {
+        if self.has_pull && !pull {
             // a force that is pending now must not be added to one that is added later
             for p in &mut self.pull {
                 p.fill(0.0);
             }
         }
-        self.has_pull = pull == 1;
+        self.has_pull = pull;
         self.step_index = u64_at(header, 24);
-        debug_assert_eq!(next, (if pull == 1 { 9 } else { 6 }) * n);
         if !same || self.stale {
             // velocities were stored for the inertia of these pins: the momentum must not be kept a second time
             self.stale = true;
@@ -169,7 +258,7 @@ impl Cloth<'_> {
         Ok(())
     }
 
-    /// A snapshot holds finite numbers and ascending pins of existing particles.
+    /// A snapshot holds finite numbers, a possible sleep, and ascending pins of existing particles.
     fn check_numbers(&self, number: &impl Fn(usize) -> f32, count: usize, pins: usize) -> Result<(), Error> {
         let mut sum = 0.0f32;
         for i in 0..count {
@@ -179,9 +268,16 @@ impl Cloth<'_> {
             return Err(Error::NotFinite);
         }
         let first = count - PIN_NUMBERS * pins;
+        // the last of the parts
+        if !self.sleep.state().is_empty() {
+            self.sleep.check(number(first - 1))?;
+        }
         let mut least = 0.0;
         for i in 0..pins {
             let particle = number(first + i * PIN_NUMBERS);
+            if self.layout.place(particle as usize).is_ok_and(|at| is_absent(self.mask, at)) {
+                return Err(Error::Absent);
+            }
             if particle < least || particle >= self.grid.particles() as f32 || particle != libm::floorf(particle) {
                 return Err(Error::NoSuchParticle);
             }

@@ -1,7 +1,7 @@
 use crate::force::{Finite, Substep, Sweep};
 use crate::layout::copy;
 use crate::math::min;
-use crate::{Cloth, Error, in_default_environment, simd};
+use crate::{Cloth, Error, Solver, in_default_environment, simd};
 
 /// What happened in a step, as bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -11,6 +11,8 @@ impl StepFlags {
     /// The frame would have ended with a number that is not finite. It was taken back whole: positions, velocities, pins
     /// and step index are those before the call; pin targets and forces of the frame are dropped.
     pub const NON_FINITE: StepFlags = StepFlags(1);
+    /// The cloth slept through the frame: only the step index has changed ([`crate::ClothDef::sleep_speed_m_s`]).
+    pub const ASLEEP: StepFlags = StepFlags(2);
 
     /// Whether every flag of `other` is set.
     pub const fn contains(self, other: StepFlags) -> bool {
@@ -25,20 +27,33 @@ impl Cloth<'_> {
     ///
     /// Error: [`Error::NoStiffness`].
     pub fn step(&mut self) -> Result<StepFlags, Error> {
-        in_default_environment(|| self.frame())
+        in_default_environment(|| self.step_frame())
     }
 
-    fn frame(&mut self) -> Result<StepFlags, Error> {
+    fn step_frame(&mut self) -> Result<StepFlags, Error> {
         if !self.has_stiffness {
             return Err(Error::NoStiffness);
+        }
+        if self.is_asleep() {
+            self.step_index += 1;
+            return Ok(StepFlags::ASLEEP);
         }
         self.refresh(true);
         self.keep_good();
         let c = self.constants();
         let substeps = self.def.substeps;
         for s in 1..=substeps {
-            self.substep(&c);
-            self.place_pins(s as f32 / substeps as f32);
+            let share = s as f32 / substeps as f32;
+            if self.layout.force() {
+                self.outer_forces(s - 1);
+            }
+            if self.def.solver != Solver::SymplecticEuler {
+                self.implicit_substep(&c);
+            } else {
+                self.substep(&c);
+            }
+            self.place_pins(share);
+            self.constrain(&c, share);
         }
         let finite = self.is_finite();
         if finite {
@@ -51,32 +66,42 @@ impl Cloth<'_> {
                 self.pins.set(i, crate::pins::Pin { to: pin.from, ..pin });
             }
         }
+        if self.layout.max_colliders > 0 {
+            self.finish_colliders(finite);
+        }
+        if self.layout.targets {
+            self.finish_targets(finite);
+        }
         if self.has_pull {
             for p in &mut self.pull {
                 p.fill(0.0);
             }
             self.has_pull = false;
         }
+        self.settle(finite);
         Ok(if finite { StepFlags(0) } else { StepFlags::NON_FINITE })
     }
 
     pub(crate) fn constants(&self) -> Substep {
         let (d, g) = (&self.def, &self.grid);
         let dt = d.dt_s();
+        let [scale_u, scale_v, scale_diagonal] = self.ambient.rest_scale();
         Substep {
             dt,
-            damping: d.damping_per_s,
-            weight: d.gravity_m_s2.map(|g| self.mass * g),
-            rest_u: g.rest_u(),
-            rest_v: g.rest_v(),
-            rest_diagonal: g.rest_diagonal(),
+            damping: self.ambient.damping(),
+            // particles with masses of their own have their weight among the forces
+            weight: if self.layout.mass { [0.0; 3] } else { self.ambient.gravity().map(|g| self.mass * g) },
+            rest_u: g.rest_u() * scale_u,
+            rest_v: g.rest_v() * scale_v,
+            rest_diagonal: g.rest_diagonal() * scale_diagonal,
             floor: if d.compression_limit { -1.0 } else { f32::NEG_INFINITY },
             speed: if d.speed_limit > 0.0 { d.speed_limit * min(g.rest_u(), g.rest_v()) / dt } else { f32::INFINITY },
         }
     }
 
     fn substep(&mut self, c: &Substep) {
-        let pull = self.has_pull.then_some([&*self.pull[0], &*self.pull[1], &*self.pull[2]]);
+        let forces = if self.layout.force() { &self.force } else { &self.pull };
+        let pull = (self.has_pull || self.layout.force()).then_some([&*forces[0], &*forces[1], &*forces[2]]);
         let sweep = Sweep {
             layout: self.layout,
             constants: c,

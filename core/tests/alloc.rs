@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use taut::field::FieldView;
-use taut::{Cloth, ClothDef, Families, Features, Vector3, baked};
+use taut::{Cloth, ClothDef, Families, Features, Frame, Vector3, baked};
 
 struct Counting;
 
@@ -68,7 +68,12 @@ fn the_counter_counts() {
 #[test]
 fn nothing_is_allocated() {
     let grid = common::squares(20, 33, 0.05, Families::ALL);
-    let def = ClothDef { features: Features::PULL, inertia_radius_m: 0.3, ..ClothDef::default() };
+    let def = ClothDef {
+        features: Features(Features::PULL.0 | Features::MASK.0 | Features::MASS.0),
+        inertia_radius_m: 0.3,
+        sleep_speed_m_s: 1e-3,
+        ..ClothDef::default()
+    };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
     let mut bytes = vec![0; 200_000];
     let field = [500.0; 4 * 7 * 5];
@@ -82,9 +87,20 @@ fn nothing_is_allocated() {
         c.pin(0).unwrap();
         c.pin(32).unwrap();
         c.budget().unwrap();
+        let (m, mut mask) = (c.particle_mass_kg(), [1; 660]);
+        mask[350] = 0;
+        c.set_mask(&mask).unwrap();
+        c.set_masses(&[2.0 * m; 660]).unwrap();
+        c.set_gravity([0.0, -5.0, 1.0]).unwrap();
+        c.set_damping(3.0).unwrap();
+        c.set_rest_scale([0.9, 1.0, 1.0]).unwrap();
         for frame in 0..20 {
             c.move_pin(0, Vector3::new(0.01 * f64::from(frame), 0.0, 0.0)).unwrap();
             c.add_force(300, Vector3::new(0.0, 0.0, 0.1)).unwrap();
+            let moved = Frame { position_m: [0.1 * f64::from(frame), 0.0, 0.0], rotation: [0.0, 0.1, 0.0, 1.0] };
+            c.set_frame(&moved, 0.5, 0.5).unwrap();
+            c.pin_force(0).unwrap();
+            assert_eq!(c.pin_forces().count(), c.pin_count());
             c.step().unwrap();
             if frame % 5 == 0 {
                 c.pin(40 + frame as usize).unwrap();
@@ -100,6 +116,9 @@ fn nothing_is_allocated() {
             c.each_structural_strain(|_, _, strain| assert!(strain.is_finite()));
             assert!(c.positions().xyz[0].len() > 20);
         }
+        c.teleport(&Frame { position_m: [1e9, 0.0, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] }).unwrap();
+        c.set_origin(Vector3::zeros()).unwrap();
+        c.wake();
         c.pin(usize::MAX).unwrap_err();
         c.reset();
     });

@@ -28,6 +28,13 @@ pub unsafe extern "C" fn taut_cloth_def_default(on: *const GridHandle) -> ClothD
         inertia_radius_m: d.inertia_radius_m,
         inertia_max: d.inertia_max,
         max_pins,
+        solver: d.solver as u32,
+        cg_iterations: d.cg_iterations,
+        tether_slack: d.tether_slack,
+        strain_limit: d.strain_limit,
+        strain_passes: d.strain_passes,
+        hinge_rigidity_n_m: d.hinge_rigidity_n_m,
+        sleep_speed_m_s: d.sleep_speed_m_s,
         features: d.features.0,
         gravity_m_s2: d.gravity_m_s2,
         u_axis: d.u_axis,
@@ -48,6 +55,10 @@ unsafe fn checked(def: *const ClothDef) -> Result<taut_core::ClothDef, Code> {
         b if b == taut_core::Budget::Tuned as u32 => taut_core::Budget::Tuned,
         _ => return Err(Code::TAUT_ERROR_OUT_OF_RANGE),
     };
+    let solver = [taut_core::Solver::SymplecticEuler, taut_core::Solver::ImplicitEuler, taut_core::Solver::Bdf2]
+        .into_iter()
+        .find(|s| *s as u32 == d.solver)
+        .ok_or(Code::TAUT_ERROR_OUT_OF_RANGE)?;
     if d.compression_limit > 1 {
         return Err(Code::TAUT_ERROR_OUT_OF_RANGE);
     }
@@ -63,6 +74,13 @@ unsafe fn checked(def: *const ClothDef) -> Result<taut_core::ClothDef, Code> {
         inertia_radius_m: d.inertia_radius_m,
         inertia_max: d.inertia_max,
         max_pins: d.max_pins,
+        solver,
+        cg_iterations: d.cg_iterations,
+        tether_slack: d.tether_slack,
+        strain_limit: d.strain_limit,
+        strain_passes: d.strain_passes,
+        hinge_rigidity_n_m: d.hinge_rigidity_n_m,
+        sleep_speed_m_s: d.sleep_speed_m_s,
         features: taut_core::Features(d.features),
         origin_m: d.origin_m,
         u_axis: d.u_axis,
@@ -133,7 +151,8 @@ pub unsafe extern "C" fn taut_cloth_create(
     })
 }
 
-/// Back to the start: flat, at rest, nothing pinned, step 0. The stiffness stays.
+/// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
+/// Stiffness, masses and mask stay.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: changes the cloth.

@@ -10,7 +10,7 @@ pub const TAUT_GRID_BYTES: usize = 64;
 /// Alignment of the block of a grid in bytes.
 pub const TAUT_GRID_ALIGN: usize = 8;
 /// Bytes at the start of a cloth's block that its numbers follow, on every target.
-pub const TAUT_CLOTH_HEADER_BYTES: usize = 1024;
+pub const TAUT_CLOTH_HEADER_BYTES: usize = 2048;
 /// Alignment of the block of a cloth in bytes.
 pub const TAUT_CLOTH_ALIGN: usize = 64;
 

@@ -38,9 +38,15 @@ mod field;
 
 mod stiffness;
 
+mod matter;
+
+mod surroundings;
+
 mod pins;
 
 mod particle;
+
+mod frame;
 
 mod step;
 
@@ -49,5 +55,10 @@ mod step_all;
 mod read;
 
 mod mesh;
+mod sleep;
+
+mod read;
+
+mod pin_force;
 
 mod rollback;

@@ -60,7 +60,7 @@ pub unsafe extern "C" fn taut_cloth_set_positions(cloth: *mut ClothHandle, count
 /// Sets the velocity of a particle, x, y, z in m/s; a pinned one keeps that of its pin.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
-/// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
+/// TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e6 m/s along an axis).
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[v_m_s;3]]
 #[unsafe(no_mangle)]
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn taut_cloth_set_velocity(cloth: *mut ClothHandle, partic
 /// Adds a force on a particle, x, y, z in N, which acts during the next frame. Needs TAUT_FEATURE_PULL.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
-/// TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
+/// TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 /// Threads: changes the cloth.
 /// cbindgen:ptrs-as-arrays=[[force_n;3]]
 #[unsafe(no_mangle)]

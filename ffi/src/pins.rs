@@ -7,7 +7,7 @@ use crate::result::Code;
 /// Pins a particle where it is. One that is pinned already stays as it is.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
-/// TAUT_ERROR_TOO_MANY_PINS.
+/// TAUT_ERROR_ABSENT, TAUT_ERROR_TOO_MANY_PINS.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn taut_cloth_pin(cloth: *mut ClothHandle, particle: u32) -> Code {

@@ -58,6 +58,8 @@ pub enum Code {
     TAUT_ERROR_VERSION_MISMATCH = -23,
     /// This machine lacks the vector width.
     TAUT_ERROR_UNSUPPORTED_WIDTH = -24,
+    /// The particle is absent: the mask says so.
+    TAUT_ERROR_ABSENT = -25,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -109,6 +111,7 @@ rows! {
     TAUT_ERROR_DAMPING c"TAUT_ERROR_DAMPING" Damping,
     TAUT_ERROR_VERSION_MISMATCH c"TAUT_ERROR_VERSION_MISMATCH" VersionMismatch,
     TAUT_ERROR_UNSUPPORTED_WIDTH c"TAUT_ERROR_UNSUPPORTED_WIDTH" UnsupportedWidth,
+    TAUT_ERROR_ABSENT c"TAUT_ERROR_ABSENT" Absent,
 }
 
 /// The codes that only C has.

@@ -34,9 +34,10 @@ pub unsafe extern "C" fn taut_cloth_snapshot_size_max(cloth: *const ClothHandle,
     }
 }
 
-/// Writes the state (positions, velocities, pins, pending forces, step index) into out, which has out_size bytes and need not
-/// be aligned. Every machine writes and reads the same bytes. Stiffness and definition are left out: they do not change by
-/// stepping. out_written, which may be NULL, gets the number of bytes.
+/// Writes the state (positions, velocities, pins, pending forces, step index, and what was changed of gravity, damping,
+/// rest lengths and frame) into out, which has out_size bytes and need not
+/// be aligned. Every machine writes and reads the same bytes. Stiffness, masses, mask and definition are left out: they do
+/// not change by stepping. out_written, which may be NULL, gets the number of bytes.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, out_written), TAUT_ERROR_BAD_HANDLE,
 /// TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
@@ -64,7 +65,8 @@ pub unsafe extern "C" fn taut_cloth_snapshot(
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_TRUNCATED,
 /// TAUT_ERROR_WRONG_KIND, TAUT_ERROR_UNSUPPORTED_VERSION, TAUT_ERROR_FOREIGN, TAUT_ERROR_SHAPE, TAUT_ERROR_CHECKSUM,
-/// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NO_SUCH_PARTICLE. Then the cloth is as it was.
+/// and, where a cloth did not write the bytes, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE, TAUT_ERROR_NEGATIVE,
+/// TAUT_ERROR_DAMPING, TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT. Then the cloth is as it was.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn taut_cloth_restore(cloth: *mut ClothHandle, data: *const c_void, size: usize) -> Code {
@@ -72,7 +74,8 @@ pub unsafe extern "C" fn taut_cloth_restore(cloth: *mut ClothHandle, data: *cons
     unsafe { change(cloth, |cloth| Ok(cloth.restore(array(data.cast::<u8>(), size)?)?)) }
 }
 
-/// 64-bit hash of the state: two machines that play in lockstep compare it.
+/// 64-bit hash of the state: two machines that play in lockstep compare it. The frame is not in it, so they may have their
+/// worlds' origins elsewhere.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: changes the cloth (it settles what a change of pins does to the inertia).

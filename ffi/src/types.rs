@@ -17,10 +17,35 @@ pub const TAUT_FAMILY_ALL: u32 = 7;
 pub const TAUT_FEATURE_NONE: u32 = 0;
 /// Forces on single particles (taut_cloth_add_force).
 pub const TAUT_FEATURE_PULL: u32 = 1;
+/// Air: drag, lift and wind.
+pub const TAUT_FEATURE_AIR: u32 = 2;
+/// Hinge bending.
+pub const TAUT_FEATURE_HINGE: u32 = 4;
+/// Tethers to the nearest pins.
+pub const TAUT_FEATURE_TETHERS: u32 = 8;
+/// The strain limit.
+pub const TAUT_FEATURE_STRAIN_LIMIT: u32 = 16;
+/// The strain limit on levels, from coarse to fine.
+pub const TAUT_FEATURE_LEVELS: u32 = 32;
+/// Colliders, up to TAUT_MAX_COLLIDERS.
+pub const TAUT_FEATURE_COLLIDERS: u32 = 64;
+/// A skinned target of each particle with a largest distance and a backstop.
+pub const TAUT_FEATURE_TARGETS: u32 = 128;
+/// A mass of its own for each particle (taut_cloth_set_masses).
+pub const TAUT_FEATURE_MASS: u32 = 256;
+/// Absent particles (taut_cloth_set_mask).
+pub const TAUT_FEATURE_MASK: u32 = 512;
+/// Working memory of an implicit solver; taut_cloth_def.solver chooses it.
+pub const TAUT_FEATURE_IMPLICIT: u32 = 1024;
+
+/// Most colliders of a cloth.
+pub const TAUT_MAX_COLLIDERS: usize = 32;
 
 /// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
 /// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
 pub const TAUT_STEP_NON_FINITE: u32 = 1;
+/// A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
+pub const TAUT_STEP_ASLEEP: u32 = 2;
 
 const _: () = {
     assert!(TAUT_MAX_SIDE == taut_core::Grid::MAX_SIDE);
@@ -30,7 +55,22 @@ const _: () = {
     assert!(TAUT_FAMILY_ALL == taut_core::Families::ALL.0);
     assert!(TAUT_FEATURE_NONE == taut_core::Features::NONE.0);
     assert!(TAUT_FEATURE_PULL == taut_core::Features::PULL.0);
+    assert!(TAUT_FEATURE_AIR == taut_core::Features::AIR.0);
+    assert!(TAUT_FEATURE_HINGE == taut_core::Features::HINGE.0);
+    assert!(TAUT_FEATURE_TETHERS == taut_core::Features::TETHERS.0);
+    assert!(TAUT_FEATURE_STRAIN_LIMIT == taut_core::Features::STRAIN_LIMIT.0);
+    assert!(TAUT_FEATURE_LEVELS == taut_core::Features::LEVELS.0);
+    assert!(TAUT_FEATURE_COLLIDERS == taut_core::Features::COLLIDERS.0);
+    assert!(TAUT_FEATURE_TARGETS == taut_core::Features::TARGETS.0);
+    assert!(TAUT_FEATURE_MASS == taut_core::Features::MASS.0);
+    assert!(TAUT_FEATURE_MASK == taut_core::Features::MASK.0);
+    assert!(TAUT_FEATURE_IMPLICIT == taut_core::Features::IMPLICIT.0);
+    assert!(TAUT_MAX_COLLIDERS == taut_core::MAX_COLLIDERS);
+    assert!(Solver::TAUT_SOLVER_SYMPLECTIC_EULER as u32 == taut_core::Solver::SymplecticEuler as u32);
+    assert!(Solver::TAUT_SOLVER_IMPLICIT_EULER as u32 == taut_core::Solver::ImplicitEuler as u32);
+    assert!(Solver::TAUT_SOLVER_BDF2 as u32 == taut_core::Solver::Bdf2 as u32);
     assert!(TAUT_STEP_NON_FINITE == taut_core::StepFlags::NON_FINITE.0);
+    assert!(TAUT_STEP_ASLEEP == taut_core::StepFlags::ASLEEP.0);
     assert!(Budget::TAUT_BUDGET_CERTIFIED as u32 == taut_core::Budget::Certified as u32);
     assert!(Budget::TAUT_BUDGET_TUNED as u32 == taut_core::Budget::Tuned as u32);
 };
@@ -45,6 +85,19 @@ pub enum Budget {
     TAUT_BUDGET_CERTIFIED = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
+}
+
+/// How a frame is solved.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Solver {
+    /// Symplectic Euler: explicit and cheapest; the stiffness is cut to the budget. The default.
+    TAUT_SOLVER_SYMPLECTIC_EULER = 0,
+    /// Implicit Euler with conjugate gradients: the stiffness as it is, at any step; damps motion.
+    TAUT_SOLVER_IMPLICIT_EULER = 1,
+    /// The second-order backward difference formula with conjugate gradients: as above, with less damping.
+    TAUT_SOLVER_BDF2 = 2,
 }
 
 /// What a grid is made of. Comes from taut_grid_def_default(), then change what you need.
@@ -103,6 +156,22 @@ pub struct ClothDef {
     /// Most pins at a time, 28 bytes each; more than there are particles means all of them. Default 256, or the number of
     /// particles if that is less.
     pub max_pins: u32,
+    /// A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
+    pub solver: u32,
+    /// Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    pub cg_iterations: u32,
+    /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
+    /// 5 %). Default 0.
+    pub tether_slack: [f32; 3],
+    /// Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    pub strain_limit: [f32; 3],
+    /// Passes of the strain limit in each substep, 1 to 64. Default 2.
+    pub strain_passes: u32,
+    /// Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
+    pub hinge_rigidity_n_m: f32,
+    /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
+    /// 1e3; 0 = never. Default 0.
+    pub sleep_speed_m_s: f32,
     /// Optional parts, TAUT_FEATURE_* or-ed. What is not asked for costs no memory and no time. Default TAUT_FEATURE_NONE.
     pub features: u32,
     /// Gravity in m/s^2, at most 1e4 in size. Default 0, -9.81, 0.
@@ -145,6 +214,17 @@ pub struct Bounds {
     pub low_m: [f64; 3],
     /// Largest x, y and z in m.
     pub high_m: [f64; 3],
+}
+
+/// Where a cloth's frame is in the world.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Frame {
+    /// Position in m, each at most 1e12 in size: the origin of the local frame.
+    pub position_m: [f64; 3],
+    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. The local axes stay those of the world: only changes of the rotation
+    /// count. 0, 0, 0, 1 is how the cloth was made.
+    pub rotation: [f32; 4],
 }
 
 /// What the budget made of the stiffness.
@@ -236,6 +316,18 @@ impl From<taut_core::baked::Fabric> for Fabric {
             limit_weft,
             limit_diagonal,
         }
+    }
+}
+
+impl From<taut_core::Frame> for Frame {
+    fn from(f: taut_core::Frame) -> Frame {
+        Frame { position_m: f.position_m, rotation: f.rotation }
+    }
+}
+
+impl From<Frame> for taut_core::Frame {
+    fn from(f: Frame) -> taut_core::Frame {
+        taut_core::Frame { position_m: f.position_m, rotation: f.rotation }
     }
 }
 

@@ -91,6 +91,7 @@ fn structures_and_values_are_those_of_rust() {
         limit_diagonal
     );
     structure!(t, types::FieldInfo, "taut_field", seed, description_hash, rows, columns, fabric, reserved);
+    structure!(t, types::Frame, "taut_frame", position_m, rotation);
     structure!(t, types::Strain, "taut_strain", largest, mean);
     structure!(t, types::PositionView, "taut_position_view", origin_m, x, y, z, row_stride, rows, columns);
     for error in Error::ALL {
@@ -105,6 +106,7 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_FAMILY_ALL", i64::from(taut::Families::ALL.0)),
         ("TAUT_FEATURE_PULL", i64::from(Features::PULL.0)),
         ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
+        ("TAUT_STEP_ASLEEP", i64::from(taut::StepFlags::ASLEEP.0)),
         ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
         ("(sizeof(taut_result))", 4),
         ("(sizeof(taut_budget))", 4),

@@ -188,7 +188,7 @@ static int definitions(void)
     WRONG(TAUT_ERROR_OUT_OF_RANGE, budget = 2);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, budget = 0xffffffffu);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, compression_limit = 2);
-    WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2);
+    WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2048);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, speed_limit = 1e-7f);
     return 0;
 }
@@ -250,6 +250,8 @@ static int handles(void)
     taut_bounds bounds;
     taut_position_view view;
     uint32_t flags[2] = {7, 7};
+    taut_frame frame = {{0, 0, 0}, {0, 0, 0, 1}};
+    float force[3] = {7, 7, 7};
     for (int i = 0; i < 3; ++i) {
         taut_cloth *c = wrong[i];
         taut_result a = answers[i];
@@ -266,6 +268,19 @@ static int handles(void)
         REFUSED(a, taut_cloth_set_positions(c, 1, local));
         REFUSED(a, taut_cloth_set_velocity(c, 0, local));
         REFUSED(a, taut_cloth_add_force(c, 0, local));
+        REFUSED(a, taut_cloth_set_gravity(c, local));
+        REFUSED(a, taut_cloth_set_damping(c, 1));
+        REFUSED(a, taut_cloth_set_rest_scale(c, 1, 1, 1));
+        REFUSED(a, taut_cloth_set_mask(c, 1, bytes));
+        REFUSED(a, taut_cloth_set_masses(c, 1, local));
+        REFUSED(a, taut_cloth_set_frame(c, &frame, 0, 0));
+        REFUSED(a, taut_cloth_teleport(c, &frame));
+        REFUSED(a, taut_cloth_set_origin(c, world));
+        REFUSED(a, taut_cloth_frame(c, &frame));
+        REFUSED(a, taut_cloth_wake(c));
+        REFUSED(a, taut_cloth_is_asleep(c, &u32));
+        REFUSED(a, taut_cloth_pin_force(c, 0, force));
+        REFUSED(a, taut_cloth_copy_pin_forces_f32(c, bytes, sizeof bytes, 12));
         REFUSED(a, taut_cloth_step(c, &u32));
         REFUSED(a, taut_cloth_step_many(c, 3, &u32));
         REFUSED(a, taut_cloth_step_index(c, &u64));
@@ -372,6 +387,7 @@ static int meshes(void)
     DONE(taut_cloth_step_all(list, 1, NULL));
     DONE(taut_cloth_step_index(list[1], &index));
     REQUIRE(index == 3 && flags[0] == 0 && flags[1] == 0);
+    REQUIRE(u64 == 7 && size == 7 && u32 == 7 && f64 == 7 && force[0] == 7);
     return 0;
 }
 
@@ -409,6 +425,44 @@ static int arguments(void)
     REFUSED(TAUT_ERROR_NOT_FINITE, taut_cloth_pin_move(cloth, 0, nan_world));
     REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_pin_move(cloth, 0, far_world));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_pin_count(cloth, NULL));
+
+    float force[3] = {7, 7, 7};
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_pin_force(cloth, 0, NULL));
+    REFUSED(TAUT_ERROR_NO_SUCH_PARTICLE, taut_cloth_pin_force(cloth, none, force));
+    REFUSED(TAUT_ERROR_NOT_PINNED, taut_cloth_pin_force(cloth, 40, force));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_copy_pin_forces_f32(cloth, NULL, 48, 12));
+    REFUSED(TAUT_ERROR_SHAPE, taut_cloth_copy_pin_forces_f32(cloth, bytes, 48, 11));
+    REFUSED(TAUT_ERROR_BLOCK_TOO_SMALL, taut_cloth_copy_pin_forces_f32(cloth, bytes, 47, 12));
+    REQUIRE(force[0] == 7);
+
+    // surroundings, masses, mask, frame
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_gravity(cloth, NULL));
+    REFUSED(TAUT_ERROR_NOT_FINITE, taut_cloth_set_gravity(cloth, nan_local));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_gravity(cloth, far_local));
+    REFUSED(TAUT_ERROR_NEGATIVE, taut_cloth_set_damping(cloth, -1));
+    REFUSED(TAUT_ERROR_DAMPING, taut_cloth_set_damping(cloth, 960));
+    REFUSED(TAUT_ERROR_NOT_FINITE, taut_cloth_set_rest_scale(cloth, 1, NAN, 1));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_rest_scale(cloth, 1, 1, 0.4f));
+    static float kg[SIDE * SIDE];
+    REFUSED(TAUT_ERROR_FEATURE_OFF, taut_cloth_set_masses(cloth, none, kg));
+    REFUSED(TAUT_ERROR_SHAPE, taut_cloth_set_masses(cloth, none + 1, kg));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_masses(cloth, none, NULL));
+    REFUSED(TAUT_ERROR_FEATURE_OFF, taut_cloth_set_mask(cloth, none, bytes));
+    REFUSED(TAUT_ERROR_SHAPE, taut_cloth_set_mask(cloth, 1, bytes));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_mask(cloth, none, NULL));
+    taut_frame frame = {{0, 0, 0}, {0, 0, 0, 0}};
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_frame(cloth, NULL));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_frame(cloth, NULL, 0, 0));
+    REFUSED(TAUT_ERROR_MISALIGNED, taut_cloth_teleport(cloth, off(bytes)));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_frame(cloth, &frame, 0, 0));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_teleport(cloth, &frame));
+    frame.rotation[3] = 1;
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_frame(cloth, &frame, 0, 1.5f));
+    frame.position_m[1] = (double)NAN;
+    REFUSED(TAUT_ERROR_NOT_FINITE, taut_cloth_set_frame(cloth, &frame, 0, 0));
+    REFUSED(TAUT_ERROR_NOT_FINITE, taut_cloth_set_origin(cloth, nan_world));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_origin(cloth, NULL));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_is_asleep(cloth, NULL));
 
     // positions and velocities
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_position(cloth, 0, NULL));
