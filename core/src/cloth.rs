@@ -8,6 +8,7 @@ use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::levels::Levels;
 use crate::math::round16;
 use crate::pins::Pins;
+use crate::strain_limit::Before;
 use crate::targets::Targets;
 use crate::tethers::Tethers;
 use crate::{ClothDef, Error, Grid, Vector3, inertia};
@@ -42,6 +43,7 @@ pub struct Cloth<'a> {
     pub(crate) mask: &'a mut [f32],
     pub(crate) pins: Pins<'a>,
     pub(crate) tethers: Tethers<'a>,
+    pub(crate) before: Before<'a>,
     pub(crate) levels: Levels<'a>,
     pub(crate) colliders: Colliders<'a>,
     pub(crate) targets: Targets<'a>,
@@ -113,6 +115,7 @@ impl<'a> Cloth<'a> {
                 capacity: layout.max_pins,
             },
             tethers: Tethers::new(&layout, b)?,
+            before: Before::new(&layout, b)?,
             levels: Levels::new(&layout, b)?,
             colliders: Colliders::new(&layout, b)?,
             targets: Targets::new(&layout, b)?,
@@ -256,11 +259,8 @@ impl<'a> Cloth<'a> {
             }
         }
         self.report = budget::project(&self.grid, &def, &l, &self.target, self.inverse, &mut self.springs, scratch);
-        if l.tethers {
+        if l.has_tethers() {
             self.attach_tethers();
-        }
-        if l.levels {
-            self.prepare_levels();
         }
         self.stale = false;
     }

@@ -43,6 +43,7 @@ mod inertia;
 mod lanes;
 mod layout;
 mod levels;
+mod limit;
 mod math;
 pub mod noise;
 mod passes;
