@@ -10,11 +10,12 @@ use crate::levels::Levels;
 use crate::masses::Body;
 use crate::math::round16;
 use crate::pins::Pins;
-use crate::{ClothDef, Error, Grid, Vector3, in_default_environment, inertia};
-use crate::width::Supported;
 use crate::sleep::Sleep;
+use crate::strain_limit::Before;
 use crate::targets::Targets;
 use crate::tethers::Tethers;
+use crate::width::Supported;
+use crate::{ClothDef, Error, Grid, Vector3, in_default_environment, inertia};
 
 /// Farthest that a position may be from the cloth's origin, in m.
 pub(crate) const REACH_M: f64 = 1e6;
@@ -46,6 +47,7 @@ pub struct Cloth<'a> {
     pub(crate) mask: &'a mut [f32],
     pub(crate) pins: Pins<'a>,
     pub(crate) tethers: Tethers<'a>,
+    pub(crate) before: Before<'a>,
     pub(crate) levels: Levels<'a>,
     pub(crate) colliders: Colliders<'a>,
     pub(crate) targets: Targets<'a>,
@@ -129,6 +131,7 @@ impl<'a> Cloth<'a> {
                 capacity: layout.max_pins,
             },
             tethers: Tethers::new(&layout, b)?,
+            before: Before::new(&layout, b)?,
             levels: Levels::new(&layout, b)?,
             colliders: Colliders::new(&layout, b)?,
             targets: Targets::new(&layout, b)?,
@@ -313,11 +316,8 @@ impl<'a> Cloth<'a> {
             }
         }
         self.report = budget::project(&body, &self.target, self.inverse, &mut self.springs, scratch);
-        if l.tethers {
+        if l.has_tethers() {
             self.attach_tethers();
-        }
-        if l.levels {
-            self.prepare_levels();
         }
         self.stale = false;
     }

@@ -1,6 +1,7 @@
 use crate::colliders::{Colliders, MAX_COLLIDERS};
 use crate::implicit::Implicit;
 use crate::levels::Levels;
+use crate::strain_limit::Before;
 use crate::targets::Targets;
 use crate::tethers::Tethers;
 use crate::{ClothDef, Error, Features, Grid, Solver, math::round16};
@@ -79,6 +80,11 @@ impl Layout {
         2 + 2 * usize::from(self.shear) + 2 * usize::from(self.bend)
     }
 
+    /// Whether there are tethers; the levels need them too.
+    pub fn has_tethers(&self) -> bool {
+        self.tethers || self.levels
+    }
+
     /// Whether there are forces beside springs, weight and pull.
     pub fn force(&self) -> bool {
         self.air || self.hinge || self.mass
@@ -104,6 +110,7 @@ impl Layout {
         planes * self.plane
             + round16(PIN_NUMBERS * self.max_pins)
             + Tethers::numbers(self)
+            + Before::numbers(self)
             + Levels::numbers(self)
             + Colliders::numbers(self)
             + Targets::numbers(self)

@@ -35,13 +35,12 @@ impl Cloth<'_> {
     /// that nothing ends inside a collider.
     pub(crate) fn constrain(&mut self, c: &Substep, share: f32) {
         let l = self.layout;
-        if l.tethers {
+        if l.tethers && !l.levels {
             self.apply_tethers(c);
         }
         if l.levels {
             self.apply_levels(c);
-        }
-        if l.strain_limit {
+        } else if l.strain_limit {
             self.apply_strain_limit(c);
         }
         if l.targets {

@@ -1,7 +1,7 @@
-use crate::{Cloth, in_default_environment};
 use crate::layout::read;
 use crate::mask::is_absent;
 use crate::math::sqrt;
+use crate::{Cloth, in_default_environment};
 
 /// Strain of the structural springs: (length - rest length) / rest length, where the rest length is the scaled one
 /// ([`Cloth::set_rest_scale`]). Springs of absent particles do not count; a cloth without springs has strain 0.

@@ -57,8 +57,6 @@ mod read;
 mod mesh;
 mod sleep;
 
-mod read;
-
 mod pin_force;
 
 mod rollback;
