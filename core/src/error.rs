@@ -53,11 +53,15 @@ pub enum Error {
     Damping = -22,
     /// The caller and the library are of different versions.
     VersionMismatch = -23,
+    /// There is no collider of this id (any more).
+    NoSuchCollider = -24,
+    /// There are [`crate::MAX_COLLIDERS`] colliders already.
+    TooManyColliders = -25,
 }
 
 impl Error {
     /// Every error, in the order of the codes.
-    pub const ALL: [Error; 23] = [
+    pub const ALL: [Error; 25] = [
         Error::NullPointer,
         Error::Misaligned,
         Error::BlockTooSmall,
@@ -81,6 +85,8 @@ impl Error {
         Error::Foreign,
         Error::Damping,
         Error::VersionMismatch,
+        Error::NoSuchCollider,
+        Error::TooManyColliders,
     ];
 
     /// The C result code: negative.
@@ -114,6 +120,8 @@ impl Error {
             Error::Foreign => "the snapshot belongs to another grid or definition",
             Error::Damping => "damping times dt must stay below 1",
             Error::VersionMismatch => "the caller was compiled against another version",
+            Error::NoSuchCollider => "there is no collider of this id",
+            Error::TooManyColliders => "there are 32 colliders already",
         }
     }
 }

@@ -126,7 +126,8 @@ impl Cloth<'_> {
     /// Reads a state back. The whole snapshot is checked before anything is changed.
     ///
     /// Errors: [`Error::Truncated`], [`Error::WrongKind`], [`Error::UnsupportedVersion`], [`Error::Foreign`] (another
-    /// grid or definition), [`Error::Checksum`], [`Error::Shape`].
+    /// grid or definition), [`Error::Checksum`], [`Error::Shape`], [`Error::NotFinite`], [`Error::NoSuchParticle`],
+    /// [`Error::Negative`] and [`Error::OutOfRange`] (colliders and targets that could not have been set).
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let (header, _) = bytes.split_at_checked(HEADER).ok_or(Error::Truncated)?;
         if !header.starts_with(MAGIC) {
@@ -158,6 +159,14 @@ impl Cloth<'_> {
         let (numbers, _) = body.get(HEADER..).unwrap_or(&[]).as_chunks::<4>();
         let number = |i: usize| numbers.get(i).map_or(0.0, |b| f32::from_le_bytes(*b));
         self.check_numbers(&number, numbers.len(), pins)?;
+        let ambient = if flags & AMBIENT != 0 { self.ambient.numbers.len() } else { 0 };
+        let parts = (if pull { 9 } else { 6 }) * self.grid.particles() + ambient;
+        if self.layout.max_colliders > 0 {
+            crate::colliders::check_stored(&number, parts)?;
+        }
+        if self.layout.targets {
+            crate::targets::check_stored(&number, parts + self.colliders.numbers.len(), &self.layout)?;
+        }
 
         let l = self.layout;
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];

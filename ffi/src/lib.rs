@@ -41,6 +41,10 @@ mod stiffness;
 
 mod pins;
 
+mod colliders;
+
+mod targets;
+
 mod particle;
 
 mod step;

@@ -56,6 +56,10 @@ pub enum Code {
     TAUT_ERROR_DAMPING = -22,
     /// The program was compiled with the header of another version.
     TAUT_ERROR_VERSION_MISMATCH = -23,
+    /// There is no collider of this id (any more).
+    TAUT_ERROR_NO_SUCH_COLLIDER = -24,
+    /// There are TAUT_MAX_COLLIDERS colliders already.
+    TAUT_ERROR_TOO_MANY_COLLIDERS = -25,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -106,6 +110,8 @@ rows! {
     TAUT_ERROR_FOREIGN c"TAUT_ERROR_FOREIGN" Foreign,
     TAUT_ERROR_DAMPING c"TAUT_ERROR_DAMPING" Damping,
     TAUT_ERROR_VERSION_MISMATCH c"TAUT_ERROR_VERSION_MISMATCH" VersionMismatch,
+    TAUT_ERROR_NO_SUCH_COLLIDER c"TAUT_ERROR_NO_SUCH_COLLIDER" NoSuchCollider,
+    TAUT_ERROR_TOO_MANY_COLLIDERS c"TAUT_ERROR_TOO_MANY_COLLIDERS" TooManyColliders,
 }
 
 /// The codes that only C has.
