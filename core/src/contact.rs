@@ -314,18 +314,22 @@ struct Rules {
 /// Moves a particle out of the colliders: those of `mask` first, then whichever it was pushed into.
 fn push_out(colliders: &[Moving], mask: u32, rules: &Rules, x: &mut V3, v: &mut V3) {
     let start = *x - *v * rules.dt;
+    let mut only = usize::MAX;
     for round in 0..ROUNDS {
-        let mut deepest = 0.0;
+        let (mut deepest, mut touches, mut last) = (0.0, 0, usize::MAX);
+        let way = if round > 0 { length(*x - start) } else { 0.0 };
         for (i, c) in colliders.iter().enumerate() {
-            if round == 0 && mask.wrapping_shr(i as u32) & 1 == 0 {
-                continue;
-            }
-            if round > 0 && !c.near_box(*x, *x, length(*x - start)) {
+            // the first time those that were found near; then all that its new place is near to, but the only one that
+            // touched: the particle is in front of it
+            let looked =
+                if round == 0 { mask.wrapping_shr(i as u32) & 1 == 1 } else { i != only && c.near_box(*x, *x, way) };
+            if !looked {
                 continue;
             }
             let Some(contact) = c.contact(start, *x, rules.recovery) else {
                 continue;
             };
+            (touches, last) = (touches + 1, i);
             let normal = contact.normal;
             let relative = *v - c.velocity_at(contact.place, rules.per_s);
             let along = relative.dot(&normal);
@@ -342,7 +346,18 @@ fn push_out(colliders: &[Moving], mask: u32, rules: &Rules, x: &mut V3, v: &mut 
         if deepest <= SLOP_M || colliders.len() == 1 {
             break;
         }
+        only = if touches == 1 { last } else { usize::MAX };
     }
+}
+
+/// The least or largest of some lanes, by halves: short chains that the compiler turns into vectors.
+#[inline(always)]
+fn folded(lanes: [f32; BLOCK], f: impl Fn(f32, f32) -> f32) -> f32 {
+    let [a, b, c, d, e, g, h, i, j, k, l, m, n, o, p, q] = lanes;
+    let eight = [f(a, j), f(b, k), f(c, l), f(d, m), f(e, n), f(g, o), f(h, p), f(i, q)];
+    let [a, b, c, d, e, g, h, i] = eight;
+    let [a, b, c, d] = [f(a, e), f(b, g), f(c, h), f(d, i)];
+    f(f(a, c), f(b, d))
 }
 
 /// The box around the particles of a row and their largest speed squared.
@@ -371,8 +386,8 @@ impl RowBound {
                 *l = min(*x, *l);
                 *h = max(*x, *h);
             }
-            *low = lows.into_iter().fold(f32::INFINITY, min);
-            *high = highs.into_iter().fold(f32::NEG_INFINITY, max);
+            *low = folded(lows, min);
+            *high = folded(highs, max);
         }
         let mut speeds = [0.0f32; BLOCK];
         let [vx, vy, vz] = v.map(|p| p.as_chunks::<BLOCK>().0);
@@ -381,7 +396,7 @@ impl RowBound {
                 speeds[i] = max(a[i] * a[i] + b[i] * b[i] + c[i] * c[i], speeds[i]);
             }
         }
-        RowBound { low: low.into(), high: high.into(), speed2: speeds.into_iter().fold(0.0, max) }
+        RowBound { low: low.into(), high: high.into(), speed2: folded(speeds, max) }
     }
 }
 

@@ -298,6 +298,10 @@ impl Cloth<'_> {
         let number = |plane: usize| block(self.targets.planes, plane * size + first);
         let (most, radius) = (number(MAX_DISTANCE), number(RADIUS));
         let mut held = [0; BLOCK];
+        let free = most.iter().zip(&radius).all(|(most, radius)| *most == FREE && *radius == 0.0);
+        if free {
+            return held;
+        }
         // from the target, along the three axes
         let mut away = [[0.0; BLOCK]; 3];
         for (a, x) in [&*self.x.x, &*self.x.y, &*self.x.z].into_iter().enumerate() {
