@@ -9,15 +9,13 @@
 
 use crate::colliders::{Collider, LocalPose, MAX_COLLIDERS, norm};
 use crate::force::Substep;
+use crate::lanes::{LANES, Lanes};
 use crate::layout::{read, span};
 use crate::math::{max, min, sqrt};
 use crate::shapes::{Solid, length};
 use crate::{Cloth, Vector3};
 
 type V3 = Vector3<f32>;
-
-/// Particles that are looked at together.
-const BLOCK: usize = 16;
 
 /// Rounds over the colliders that touch a particle: where it is pushed from one into another.
 const ROUNDS: usize = 4;
@@ -191,39 +189,31 @@ impl Moving {
 
     /// Which of some places can be touched on a way of at most `way`: 1 where they can.
     #[inline(always)]
-    fn near(&self, x: &[f32; BLOCK], y: &[f32; BLOCK], z: &[f32; BLOCK], way: f32) -> [u32; BLOCK] {
-        let mut hit = [0; BLOCK];
-        match self.bound {
+    fn near(&self, [x, y, z]: [Lanes; 3], way: f32) -> [u32; LANES] {
+        let all = Lanes::all;
+        let limit = self.reach + way;
+        let from = |a: V3| (x - all(a.x), y - all(a.y), z - all(a.z));
+        let dot = |(x, y, z): (Lanes, Lanes, Lanes), b: V3| x * all(b.x) + y * all(b.y) + z * all(b.z);
+        let (value, limit) = match self.bound {
             Bound::Segment { a, way: along, inverse } => {
-                let limit = self.reach + way;
-                let limit = limit * limit;
-                for i in 0..BLOCK {
-                    let d = V3::new(x[i] - a.x, y[i] - a.y, z[i] - a.z);
-                    let t = min(max(d.dot(&along) * inverse, 0.0), 1.0);
-                    let d = d - along * t;
-                    hit[i] = u32::from(d.dot(&d) <= limit);
-                }
+                let d = from(a);
+                let t = (dot(d, along) * all(inverse)).max(all(0.0)).min(all(1.0));
+                let (x, y, z) = (d.0 - t * all(along.x), d.1 - t * all(along.y), d.2 - t * all(along.z));
+                (x * x + y * y + z * z, limit * limit)
             }
             Bound::Plane { normal, at } => {
-                let limit = self.reach + way;
-                for i in 0..BLOCK {
-                    let p = V3::new(x[i], y[i], z[i]);
-                    let rounding = 8.0 * ROUNDING * (p.x.abs() + p.y.abs() + p.z.abs());
-                    hit[i] = u32::from(normal.dot(&p) - at <= limit + rounding);
-                }
+                let rounding = all(8.0 * ROUNDING) * (x.abs() + y.abs() + z.abs());
+                (dot((x, y, z), normal) - all(at) - rounding, limit)
             }
             Bound::Box { half } => {
-                let limit = self.reach + way;
-                let limit = limit * limit;
-                for i in 0..BLOCK {
-                    let y = self.now.into_frame(V3::new(x[i], y[i], z[i]));
-                    let out = |y: f32, half: f32| max(y.abs() - half, 0.0);
-                    let d = V3::new(out(y.x, half.x), out(y.y, half.y), out(y.z, half.z));
-                    hit[i] = u32::from(d.dot(&d) <= limit);
-                }
+                let d = from(self.now.position);
+                let [a, b, c] = self.now.axes.map(|axis| dot(d, axis).abs());
+                let out = |y: Lanes, half: f32| (y - all(half)).max(all(0.0));
+                let (x, y, z) = (out(a, half.x), out(b, half.y), out(c, half.z));
+                (x * x + y * y + z * z, limit * limit)
             }
-        }
-        hit
+        };
+        value.0.map(|value| u32::from(value <= limit))
     }
 
     #[inline(always)]
@@ -350,16 +340,6 @@ fn push_out(colliders: &[Moving], mask: u32, rules: &Rules, x: &mut V3, v: &mut 
     }
 }
 
-/// The least or largest of some lanes, by halves: short chains that the compiler turns into vectors.
-#[inline(always)]
-fn folded(lanes: [f32; BLOCK], f: impl Fn(f32, f32) -> f32) -> f32 {
-    let [a, b, c, d, e, g, h, i, j, k, l, m, n, o, p, q] = lanes;
-    let eight = [f(a, j), f(b, k), f(c, l), f(d, m), f(e, n), f(g, o), f(h, p), f(i, q)];
-    let [a, b, c, d, e, g, h, i] = eight;
-    let [a, b, c, d] = [f(a, e), f(b, g), f(c, h), f(d, i)];
-    f(f(a, c), f(b, d))
-}
-
 /// The box around the particles of a row and their largest speed squared.
 struct RowBound {
     low: V3,
@@ -367,36 +347,34 @@ struct RowBound {
     speed2: f32,
 }
 
+/// Numbers of a row, by the lanes.
+type Row<'a> = &'a [[f32; LANES]];
+
 impl RowBound {
-    #[inline]
-    fn new(x: [&[f32]; 3], v: [&[f32]; 3]) -> RowBound {
-        let mut low = [0.0; 3];
-        let mut high = [0.0; 3];
-        for ((low, high), plane) in low.iter_mut().zip(&mut high).zip(x) {
-            let mut lows = [f32::INFINITY; BLOCK];
-            let mut highs = [f32::NEG_INFINITY; BLOCK];
-            let (blocks, rest) = plane.as_chunks::<BLOCK>();
-            for block in blocks {
-                for i in 0..BLOCK {
-                    lows[i] = min(block[i], lows[i]);
-                    highs[i] = max(block[i], highs[i]);
-                }
-            }
-            for ((l, h), x) in lows.iter_mut().zip(&mut highs).zip(rest) {
-                *l = min(*x, *l);
-                *h = max(*x, *h);
-            }
-            *low = folded(lows, min);
-            *high = folded(highs, max);
+    /// `rest` are the places after the last full lanes.
+    #[inline(never)]
+    fn new(x: [Row<'_>; 3], v: [Row<'_>; 3], rest: [&[f32]; 3]) -> RowBound {
+        let all = Lanes::all;
+        let mut low = [all(f32::INFINITY); 3];
+        let mut high = [all(f32::NEG_INFINITY); 3];
+        let mut speed2 = all(0.0);
+        let ([x, y, z], [vx, vy, vz]) = (x, v);
+        for ((x, y), z) in x.iter().zip(y).zip(z) {
+            let (x, y, z) = (Lanes(*x), Lanes(*y), Lanes(*z));
+            low = [x.min(low[0]), y.min(low[1]), z.min(low[2])];
+            high = [x.max(high[0]), y.max(high[1]), z.max(high[2])];
         }
-        let mut speeds = [0.0f32; BLOCK];
-        let [vx, vy, vz] = v.map(|p| p.as_chunks::<BLOCK>().0);
-        for ((a, b), c) in vx.iter().zip(vy).zip(vz) {
-            for i in 0..BLOCK {
-                speeds[i] = max(a[i] * a[i] + b[i] * b[i] + c[i] * c[i], speeds[i]);
-            }
+        for ((x, y), z) in vx.iter().zip(vy).zip(vz) {
+            let (x, y, z) = (Lanes(*x), Lanes(*y), Lanes(*z));
+            speed2 = (x * x + y * y + z * z).max(speed2);
         }
-        RowBound { low: low.into(), high: high.into(), speed2: folded(speeds, max) }
+        let least = |lanes: Lanes, rest: &[f32]| rest.iter().copied().chain(lanes.0).fold(f32::INFINITY, min);
+        let most = |lanes: Lanes, rest: &[f32]| rest.iter().copied().chain(lanes.0).fold(f32::NEG_INFINITY, max);
+        RowBound {
+            low: V3::new(least(low[0], rest[0]), least(low[1], rest[1]), least(low[2], rest[2])),
+            high: V3::new(most(high[0], rest[0]), most(high[1], rest[1]), most(high[2], rest[2])),
+            speed2: most(speed2, &[]),
+        }
     }
 }
 
@@ -429,10 +407,10 @@ impl Cloth<'_> {
     fn row_out(&mut self, row: usize, colliders: &[Moving], rules: &Rules) {
         let l = self.layout;
         let at = l.row(row);
-        let x = [&*self.x.x, &*self.x.y, &*self.x.z];
-        let v = [&*self.v.x, &*self.v.y, &*self.v.z];
-        // spare places of the last block have no speed
-        let bound = RowBound::new(x.map(|p| span(p, at, l.columns)), v.map(|p| span(p, at, l.width)));
+        let x = [&*self.x.x, &*self.x.y, &*self.x.z].map(|p| span(p, at, l.columns).as_chunks::<LANES>());
+        // spare places of the last lanes have no speed
+        let v = [&*self.v.x, &*self.v.y, &*self.v.z].map(|p| span(p, at, l.width).as_chunks::<LANES>().0);
+        let bound = RowBound::new(x.map(|p| p.0), v, x.map(|p| p.1));
         let way = sqrt(bound.speed2) * rules.dt;
         let mut near: u32 = 0;
         for (i, c) in colliders.iter().enumerate() {
@@ -443,14 +421,15 @@ impl Cloth<'_> {
         if near == 0 {
             return;
         }
-        for start in (0..l.width).step_by(BLOCK) {
-            let block = |p: &[f32]| span(p, at + start, BLOCK).first_chunk::<BLOCK>().copied().unwrap_or([0.0; BLOCK]);
-            let (x, y, z) = (block(self.x.x), block(self.x.y), block(self.x.z));
-            let mut masks = [0u32; BLOCK];
+        for start in (0..l.width).step_by(LANES) {
+            let load =
+                |p: &[f32]| Lanes(span(p, at + start, LANES).first_chunk::<LANES>().copied().unwrap_or([0.0; LANES]));
+            let places = [load(self.x.x), load(self.x.y), load(self.x.z)];
+            let mut masks = [0u32; LANES];
             let mut any = 0;
             for (i, c) in colliders.iter().enumerate() {
                 if near.wrapping_shr(i as u32) & 1 == 1 {
-                    for (mask, hit) in masks.iter_mut().zip(c.near(&x, &y, &z, way)) {
+                    for (mask, hit) in masks.iter_mut().zip(c.near(places, way)) {
                         *mask |= hit.wrapping_shl(i as u32);
                         any |= *mask;
                     }
@@ -516,8 +495,7 @@ mod tests {
                 let dt = 1.0 / 960.0;
                 let contact = c.contact(x - v * dt, x, 0.01);
                 let way = length(v) * dt;
-                let lanes = [[x.x; BLOCK], [x.y; BLOCK], [x.z; BLOCK]];
-                let near = c.near(&lanes[0], &lanes[1], &lanes[2], way)[3] == 1;
+                let near = c.near([Lanes::all(x.x), Lanes::all(x.y), Lanes::all(x.z)], way)[3] == 1;
                 let boxed = c.near_box(x, x, way);
                 assert!(contact.is_none() || (near && boxed), "{shape:?} {c:?} {x} {v}");
                 touched += usize::from(contact.is_some());

@@ -29,6 +29,18 @@ impl Lanes {
         self.zip(other, math::max)
     }
 
+    /// The smaller, `other` where they do not compare.
+    #[inline(always)]
+    pub fn min(self, other: Lanes) -> Lanes {
+        self.zip(other, math::min)
+    }
+
+    /// Without the sign.
+    #[inline(always)]
+    pub fn abs(self) -> Lanes {
+        self.zip(self, |a, _| a.abs())
+    }
+
     #[inline(always)]
     pub fn over(self, other: Lanes) -> Lanes {
         self.zip(other, |a, b| a / b)
