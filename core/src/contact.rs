@@ -178,8 +178,7 @@ impl Moving {
             let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
             let (size, near) = (normal.abs().dot(&half), normal.dot(&middle) - at);
             let rounding = 8.0 * ROUNDING * (length(middle) + size);
-            // not <=: what is not a number is looked at
-            return !(near - size > self.reach + way + rounding);
+            return near - size <= self.reach + way + rounding;
         }
         let apart = |low: f32, high: f32, from: f32, to: f32| low - way > to || high + way < from;
         !(apart(low.x, high.x, self.low.x, self.high.x)

@@ -105,7 +105,12 @@ unsafe fn put(
                 position_m: positions.get(i).into(),
                 normal: normals.as_ref().map_or([0.0; 3], |normals| normals.get(i)).into(),
             };
-            Ok(if at_once { cloth.set_targets(base, target)? } else { cloth.move_targets(base, target)? })
+            if at_once {
+                cloth.set_targets(base, target)?;
+            } else {
+                cloth.move_targets(base, target)?;
+            }
+            Ok(())
         })
     }
 }
