@@ -271,6 +271,29 @@ typedef uint32_t taut_solver;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// The shape of a collider.
+enum taut_shape
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // A ball around the collider's position: radius_m[0].
+    TAUT_SHAPE_SPHERE = 1,
+    // The hull of two balls: ends_m and radius_m. Where one ball holds the other it is the larger ball.
+    TAUT_SHAPE_CAPSULE = 2,
+    // The half space behind the plane through the collider's position: normal.
+    TAUT_SHAPE_PLANE = 3,
+    // A box around the collider's position: half_m.
+    TAUT_SHAPE_BOX = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_shape taut_shape;
+#else
+typedef uint32_t taut_shape;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -714,6 +737,108 @@ TAUT_API taut_result taut_cloth_unpin(taut_cloth *cloth, uint32_t particle);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
 TAUT_API taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out);
+
+// A definition of a collider with its defaults; shape is a taut_shape.
+//
+// Threads: any.
+taut_collider_def taut_collider_def_default(uint32_t shape);
+
+// Adds a collider, of which a cloth has up to TAUT_MAX_COLLIDERS. Needs TAUT_FEATURE_COLLIDERS. out_id is its id: a value,
+// never 0, that is not given again after the collider was removed. Ids are part of the state: after taut_cloth_restore
+// or taut_cloth_reset the same calls give the same ids again. Particles that are inside are moved out over the nearest
+// surface, by at most 1/16 of the smallest rest length in each substep. docs/contact.md tells what a collider does.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_BAD_DEFINITION,
+// TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE (also a shape that is none, a
+// size of 0), TAUT_ERROR_TOO_MANY_COLLIDERS.
+// Threads: changes the cloth.
+taut_result taut_cloth_collider_add(taut_cloth *cloth,
+                                    const taut_collider_def *def,
+                                    uint32_t *out_id);
+
+// Moves a collider: at the end of the next frame it is at pose, and on the way there its position is interpolated linearly
+// over the substeps and its rotation along the shorter arc. Its surface drags the cloth with it. Without a new call it then
+// stays.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's origin, a rotation of length 0).
+// Threads: changes the cloth.
+taut_result taut_cloth_collider_move(taut_cloth *cloth,
+                                     uint32_t id,
+                                     const taut_pose *pose);
+
+// Puts a collider somewhere at once, with no way and no velocity between: a teleport. Particles that are inside then are
+// moved out as after taut_cloth_collider_add.
+//
+// Errors: those of taut_cloth_collider_move.
+// Threads: changes the cloth.
+taut_result taut_cloth_collider_set_pose(taut_cloth *cloth,
+                                         uint32_t id,
+                                         const taut_pose *pose);
+
+// Removes a collider; its id is answered with TAUT_ERROR_NO_SUCH_COLLIDER from now on.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER.
+// Threads: changes the cloth.
+taut_result taut_cloth_collider_remove(taut_cloth *cloth, uint32_t id);
+
+// Where a collider is now, before the next frame.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER.
+// Threads: reads the cloth.
+taut_result taut_cloth_collider_pose(const taut_cloth *cloth, uint32_t id, taut_pose *out);
+
+// Number of colliders.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+taut_result taut_cloth_collider_count(const taut_cloth *cloth, uint32_t *out);
+
+// Sets how far each of the count particles may be from its target; count is the number of particles of the grid. Needs
+// TAUT_FEATURE_TARGETS. max_distance_m is the largest distance in m, 0 to 1e6 or infinity (free, as before the first call);
+// with 0 the particle is where its target is. The backstop is a ball that the particle stays out of: its radius in m, 0 to
+// 1e6 (0 = none), and the distance of its surface behind the target, against the normal of the skin, 0 to 1e6 m; either may
+// be NULL, which means 0. All or nothing.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
+// (count), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_target_limits(taut_cloth *cloth,
+                                         uint32_t count,
+                                         const float *max_distance_m,
+                                         const float *backstop_radius_m,
+                                         const float *backstop_distance_m);
+
+// Moves the targets of the count particles: at the end of the next frame they are there, and on the way they are
+// interpolated linearly over the substeps. Without a new call they then stay. Before the first call they are the places and
+// the normal of the flat cloth at its start.
+//
+// positions_m holds x, y, z in m of each particle as floats, as seen from base_m, a point of the world in m; normals the
+// outward normals of the skin, 1e-3 to 1e3 long (0, 0, 0 keeps the last one), or NULL, which keeps them all. stride is the
+// bytes from a particle to the next in both, at least 12; neither need be aligned. All or nothing.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth, base_m), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
+// TAUT_ERROR_SHAPE (count, stride), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's
+// origin, a normal of another length).
+// Threads: changes the cloth.
+taut_result taut_cloth_move_targets(taut_cloth *cloth,
+                                    const double base_m[3],
+                                    uint32_t count,
+                                    const void *positions_m,
+                                    const void *normals,
+                                    size_t stride);
+
+// Puts the targets somewhere at once, with no way and no velocity between: for the first frame and for teleports. The
+// arguments are those of taut_cloth_move_targets.
+//
+// Errors: those of taut_cloth_move_targets.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_targets(taut_cloth *cloth,
+                                   const double base_m[3],
+                                   uint32_t count,
+                                   const void *positions_m,
+                                   const void *normals,
+                                   size_t stride);
 
 // Puts a particle somewhere, at rest; a pinned one together with its pin. local_m is x, y, z in m in the cloth's local
 // frame (the world less origin_m).

@@ -186,7 +186,7 @@ impl<'a> Cloth<'a> {
         self.pins.count = 0;
         self.ambient = Ambient::new(&self.def);
         self.colliders.numbers.fill(0.0);
-        self.targets.planes.fill(0.0);
+        self.reset_targets();
         self.implicit.planes.fill(0.0);
         self.pose = Pose::new(&self.def);
         self.step_index = 0;

@@ -57,11 +57,15 @@ pub enum Error {
     UnsupportedWidth = -24,
     /// The particle is absent: the mask says so.
     Absent = -25,
+    /// There is no collider of this id (any more).
+    NoSuchCollider = -26,
+    /// There are [`crate::MAX_COLLIDERS`] colliders already.
+    TooManyColliders = -27,
 }
 
 impl Error {
     /// Every error, in the order of the codes.
-    pub const ALL: [Error; 25] = [
+    pub const ALL: [Error; 27] = [
         Error::NullPointer,
         Error::Misaligned,
         Error::BlockTooSmall,
@@ -87,6 +91,8 @@ impl Error {
         Error::VersionMismatch,
         Error::UnsupportedWidth,
         Error::Absent,
+        Error::NoSuchCollider,
+        Error::TooManyColliders,
     ];
 
     /// The C result code: negative.
@@ -122,6 +128,8 @@ impl Error {
             Error::VersionMismatch => "the caller was compiled against another version",
             Error::UnsupportedWidth => "this machine lacks the vector width",
             Error::Absent => "the particle is absent: the mask says so",
+            Error::NoSuchCollider => "there is no collider of this id",
+            Error::TooManyColliders => "there are 32 colliders already",
         }
     }
 }

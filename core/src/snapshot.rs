@@ -200,6 +200,14 @@ impl Cloth<'_> {
             ambient.changed = true;
             ambient.check(&self.def)?;
         }
+        let surroundings = if flags & AMBIENT != 0 { ambient.numbers.len() } else { 0 };
+        let parts = (if pull { 9 } else { 6 }) * self.grid.particles() + surroundings;
+        if self.layout.max_colliders > 0 {
+            crate::colliders::check_stored(&number, parts)?;
+        }
+        if self.layout.targets {
+            crate::targets::check_stored(&number, parts + self.colliders.numbers.len(), &self.layout)?;
+        }
 
         let l = self.layout;
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];

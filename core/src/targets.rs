@@ -1,8 +1,74 @@
 //! Largest distance and backstop to skinned targets of the particles.
+//!
+//! A particle stays within `max_distance` of its target, and out of a ball of `backstop_radius` whose surface lies
+//! `backstop_distance` behind the target, against the normal of the skin: the motion and separation constraints of other
+//! engines. Velocity against a limit, relative to the target, is taken; along it, it is kept.
 
 use crate::force::Substep;
-use crate::layout::{Layout, take};
-use crate::{Cloth, Error};
+use crate::layout::{Layout, copy, read, span, take, write};
+use crate::math::{max, min, sqrt};
+use crate::shapes::{direction, length};
+use crate::{Cloth, Error, Vector3};
+
+type V3 = Vector3<f32>;
+
+/// Planes: position and normal at the start of the frame, then at its end, then the three distances.
+pub(crate) const TARGET_PLANES: usize = 15;
+const TO: usize = 6;
+const NORMAL: usize = 3;
+const MAX_DISTANCE: usize = 12;
+const RADIUS: usize = 13;
+const DISTANCE: usize = 14;
+
+/// What is stored for a particle without a largest distance: a state holds finite numbers only.
+const FREE: f32 = f32::MAX;
+
+/// Particles that are looked at together.
+const BLOCK: usize = 16;
+
+/// How far a particle may be from its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetLimit {
+    /// Largest distance to the target in m, 0 to 1e6, or infinity: free, the default. With 0 the particle is where its
+    /// target is.
+    pub max_distance_m: f32,
+    /// Radius of the backstop in m, 0 to 1e6; 0 = none, the default.
+    pub backstop_radius_m: f32,
+    /// Distance of the backstop's surface behind the target in m, 0 to 1e6. Default 0.
+    pub backstop_distance_m: f32,
+}
+
+impl Default for TargetLimit {
+    fn default() -> Self {
+        TargetLimit { max_distance_m: f32::INFINITY, backstop_radius_m: 0.0, backstop_distance_m: 0.0 }
+    }
+}
+
+impl TargetLimit {
+    /// Errors: [`Error::NotFinite`], [`Error::Negative`], [`Error::OutOfRange`].
+    fn check(&self) -> Result<(), Error> {
+        let backstop = [self.backstop_radius_m, self.backstop_distance_m];
+        if self.max_distance_m.is_nan() || !backstop.iter().all(|x| x.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if self.max_distance_m < 0.0 || backstop.iter().any(|x| *x < 0.0) {
+            return Err(Error::Negative);
+        }
+        if (self.max_distance_m > 1e6 && self.max_distance_m < f32::INFINITY) || backstop.iter().any(|x| *x > 1e6) {
+            return Err(Error::OutOfRange);
+        }
+        Ok(())
+    }
+}
+
+/// Where the skin is at a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Position in m from the base that is handed in beside it.
+    pub position_m: Vector3<f32>,
+    /// Outward normal of the skin, of any length from 1e-3 to 1e3; zero keeps the last one.
+    pub normal: Vector3<f32>,
+}
 
 /// The targets of a cloth. All their numbers are state.
 pub(crate) struct Targets<'a> {
@@ -12,18 +78,288 @@ pub(crate) struct Targets<'a> {
 impl<'a> Targets<'a> {
     /// f32 numbers that they need.
     pub fn numbers(l: &Layout) -> usize {
-        if l.targets { 12 * l.plane } else { 0 }
+        if l.targets { TARGET_PLANES * l.plane } else { 0 }
     }
 
     pub fn new(l: &Layout, block: &mut &'a mut [f32]) -> Result<Self, Error> {
         Ok(Targets { planes: take(block, Self::numbers(l))? })
     }
+
+    fn vector(&self, plane: usize, size: usize, at: usize) -> V3 {
+        let n = |i: usize| read(self.planes, (plane + i) * size + at);
+        V3::new(n(0), n(1), n(2))
+    }
+
+    fn put(&mut self, plane: usize, size: usize, at: usize, v: V3) {
+        for (i, x) in v.iter().enumerate() {
+            write(self.planes, (plane + i) * size + at, *x);
+        }
+    }
+}
+
+/// Whether the numbers of a snapshot from `first` on are targets that could have been set.
+/// Errors: [`Error::Negative`], [`Error::OutOfRange`].
+pub(crate) fn check_stored(number: &impl Fn(usize) -> f32, first: usize, l: &Layout) -> Result<(), Error> {
+    for row in 0..l.rows {
+        for column in 0..l.columns {
+            let n = |plane: usize| number(first + plane * l.plane + l.at(row, column));
+            let max_distance_m = if n(MAX_DISTANCE) == FREE { f32::INFINITY } else { n(MAX_DISTANCE) };
+            let (backstop_radius_m, backstop_distance_m) = (n(RADIUS), n(DISTANCE));
+            TargetLimit { max_distance_m, backstop_radius_m, backstop_distance_m }.check()?;
+            for plane in [0, TO] {
+                let normal = V3::new(n(plane + NORMAL), n(plane + NORMAL + 1), n(plane + NORMAL + 2));
+                if !(0.999..=1.001).contains(&length(normal)) || (0..3).any(|i| n(plane + i).abs() > 2e6) {
+                    return Err(Error::OutOfRange);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The target of one particle in a substep.
+struct Aim {
+    position: V3,
+    velocity: V3,
+    normal: V3,
+    /// Change of the normal in 1/s.
+    turning: V3,
+    max_distance: f32,
+    radius: f32,
+    distance: f32,
+}
+
+impl Aim {
+    /// Holds a particle within its limits.
+    fn hold(&self, x: &mut V3, v: &mut V3) {
+        let (out, away) = direction(*x - self.position);
+        if self.max_distance == 0.0 {
+            (*x, *v) = (self.position, self.velocity);
+        } else if away > self.max_distance {
+            *x = self.position + out * self.max_distance;
+            *v -= out * max((*v - self.velocity).dot(&out), 0.0);
+        }
+        if self.radius == 0.0 {
+            return;
+        }
+        let behind = self.radius + self.distance;
+        let center = self.position - self.normal * behind;
+        let from = *x - center;
+        let inside = length(from);
+        if inside >= self.radius {
+            return;
+        }
+        let mut out = if inside > 0.0 { from / inside } else { self.normal };
+        *x = center + out * self.radius;
+        let (_, away) = direction(*x - self.position);
+        if away > self.max_distance {
+            // Pushed past the largest distance: the nearest place that both allow lies on the circle where the balls meet,
+            // `under` below the target against the normal. The target is outside the backstop, so they do meet.
+            let (r, d) = (self.radius, self.max_distance);
+            let under = (self.distance * (behind + r) + d * d) / (2.0 * behind);
+            let (across, _) = direction(out - self.normal * out.dot(&self.normal));
+            *x = self.position - self.normal * under + across * sqrt(max(d * d - under * under, 0.0));
+            (out, _) = direction(*x - center);
+        }
+        let velocity = self.velocity - self.turning * behind;
+        *v -= out * min((*v - velocity).dot(&out), 0.0);
+    }
 }
 
 impl Cloth<'_> {
+    /// Sets how far each particle may be from its target: `limit(particle)`, particle = row * columns + column.
+    ///
+    /// Errors: [`Error::FeatureOff`] without [`crate::Features::TARGETS`], [`Error::NotFinite`], [`Error::Negative`],
+    /// [`Error::OutOfRange`]; then nothing is changed.
+    pub fn set_target_limits(&mut self, limit: impl Fn(usize) -> TargetLimit) -> Result<(), Error> {
+        let l = self.layout;
+        if !l.targets {
+            return Err(Error::FeatureOff);
+        }
+        for particle in 0..self.grid.particles() {
+            limit(particle).check()?;
+        }
+        for particle in 0..self.grid.particles() {
+            let (at, limit) = (l.place(particle)?, limit(particle));
+            let max_distance = if limit.max_distance_m == f32::INFINITY { FREE } else { limit.max_distance_m };
+            write(self.targets.planes, MAX_DISTANCE * l.plane + at, max_distance);
+            write(self.targets.planes, RADIUS * l.plane + at, limit.backstop_radius_m);
+            write(self.targets.planes, DISTANCE * l.plane + at, limit.backstop_distance_m);
+        }
+        Ok(())
+    }
+
+    /// Moves the targets: at the end of the next frame they are at `target(particle)` from `base_m`, a point of the world,
+    /// and on the way there they are interpolated linearly over the substeps. Without a new call they then stay. Before the
+    /// first call the targets are the places and the normal of the flat cloth at the start.
+    ///
+    /// Errors: [`Error::FeatureOff`] without [`crate::Features::TARGETS`], [`Error::NotFinite`], [`Error::OutOfRange`] (more
+    /// than 1e6 m from the cloth's origin, a normal of another length); then nothing is changed.
+    pub fn move_targets(&mut self, base_m: Vector3<f64>, target: impl Fn(usize) -> Target) -> Result<(), Error> {
+        self.put_targets(base_m, target, false)
+    }
+
+    /// Puts the targets somewhere at once, with no way and no velocity between: for the first frame and for teleports.
+    ///
+    /// Errors: those of [`Cloth::move_targets`].
+    pub fn set_targets(&mut self, base_m: Vector3<f64>, target: impl Fn(usize) -> Target) -> Result<(), Error> {
+        self.put_targets(base_m, target, true)
+    }
+
+    fn put_targets(
+        &mut self,
+        base_m: Vector3<f64>,
+        target: impl Fn(usize) -> Target,
+        at_once: bool,
+    ) -> Result<(), Error> {
+        let l = self.layout;
+        if !l.targets {
+            return Err(Error::FeatureOff);
+        }
+        let local = |cloth: &Self, particle: usize| {
+            let t = target(particle);
+            if !t.normal.iter().all(|x| x.is_finite()) {
+                return Err(Error::NotFinite);
+            }
+            let long = length(t.normal);
+            if t.normal != V3::zeros() && !(1e-3..=1e3).contains(&long) {
+                return Err(Error::OutOfRange);
+            }
+            let position = cloth.to_local(base_m + t.position_m.cast::<f64>())?;
+            Ok((V3::from(position), if long > 0.0 { Some(t.normal / long) } else { None }))
+        };
+        for particle in 0..self.grid.particles() {
+            local(self, particle)?;
+        }
+        for particle in 0..self.grid.particles() {
+            let (at, (position, normal)) = (l.place(particle)?, local(self, particle)?);
+            for from in [0, TO] {
+                if from == TO || at_once {
+                    self.targets.put(from, l.plane, at, position);
+                    if let Some(normal) = normal {
+                        self.targets.put(from + NORMAL, l.plane, at, normal);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The targets of the start: the places and the normal of the flat cloth, everything free.
+    pub(crate) fn reset_targets(&mut self) {
+        let l = self.layout;
+        if !l.targets {
+            return;
+        }
+        self.targets.planes.fill(0.0);
+        let (u, v) = (V3::from(self.def.u_axis).normalize(), V3::from(self.def.v_axis).normalize());
+        let (normal, _) = direction(u.cross(&v));
+        for row in 0..l.rows {
+            for column in 0..l.columns {
+                let at = l.at(row, column);
+                let position = V3::from(self.local(at));
+                for from in [0, TO] {
+                    self.targets.put(from, l.plane, at, position);
+                    self.targets.put(from + NORMAL, l.plane, at, normal);
+                }
+                write(self.targets.planes, MAX_DISTANCE * l.plane + at, FREE);
+            }
+        }
+    }
+
     /// Keeps the particles within their distance of the targets as they are at `share` (0 to 1) of the frame.
-    pub(crate) fn apply_targets(&mut self, _c: &Substep, _share: f32) {}
+    pub(crate) fn apply_targets(&mut self, _c: &Substep, share: f32) {
+        let l = self.layout;
+        for row in 0..l.rows {
+            for start in (0..l.width).step_by(BLOCK) {
+                let first = l.at(row, start);
+                let held = self.block_held(first, share);
+                for (i, held) in held.into_iter().enumerate() {
+                    let at = first + i;
+                    if held == 0 || read(self.inverse, at) == 0.0 {
+                        continue;
+                    }
+                    let mut x = V3::from(self.local(at));
+                    let mut v = V3::new(read(self.v.x, at), read(self.v.y, at), read(self.v.z, at));
+                    self.aim(at, share).hold(&mut x, &mut v);
+                    self.set_position_at(at, x.into());
+                    self.set_velocity_at(at, v.into());
+                }
+            }
+        }
+    }
+
+    /// Which particles of a block a limit holds: 1 where one may. A quick look; [`Aim::hold`] looks exactly.
+    #[inline(always)]
+    fn block_held(&self, first: usize, share: f32) -> [u32; BLOCK] {
+        let size = self.layout.plane;
+        let block =
+            |plane: &[f32], at: usize| span(plane, at, BLOCK).first_chunk::<BLOCK>().copied().unwrap_or([0.0; BLOCK]);
+        let number = |plane: usize| block(self.targets.planes, plane * size + first);
+        let (most, radius) = (number(MAX_DISTANCE), number(RADIUS));
+        let mut held = [0; BLOCK];
+        let free = most.iter().zip(&radius).all(|(most, radius)| *most == FREE && *radius == 0.0);
+        if free {
+            return held;
+        }
+        // from the target, along the three axes
+        let mut away = [[0.0; BLOCK]; 3];
+        for (a, x) in [&*self.x.x, &*self.x.y, &*self.x.z].into_iter().enumerate() {
+            let (x, from, to) = (block(x, first), number(a), number(TO + a));
+            if let Some(away) = away.get_mut(a) {
+                for i in 0..BLOCK {
+                    away[i] = x[i] - (from[i] + (to[i] - from[i]) * share);
+                }
+            }
+        }
+        let [x, y, z] = &away;
+        let mut backstops = 0.0f32;
+        for i in 0..BLOCK {
+            // a little less than the limit, since it is a squared and rounded one
+            let d = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+            held[i] = u32::from(d >= most[i] * most[i] * 0.9999);
+            backstops = max(radius[i], backstops);
+        }
+        if backstops > 0.0 {
+            let distance = number(DISTANCE);
+            let (ax, ay, az) = (number(NORMAL), number(NORMAL + 1), number(NORMAL + 2));
+            let (bx, by, bz) = (number(TO + NORMAL), number(TO + NORMAL + 1), number(TO + NORMAL + 2));
+            for i in 0..BLOCK {
+                let mix = |a: f32, b: f32| a + (b - a) * share;
+                let n = V3::new(mix(ax[i], bx[i]), mix(ay[i], by[i]), mix(az[i], bz[i]));
+                let behind = (radius[i] + distance[i]) / sqrt(max(n.dot(&n), 1e-12));
+                let from = V3::new(x[i], y[i], z[i]) + n * behind;
+                held[i] |= u32::from(from.dot(&from) <= radius[i] * radius[i] * 1.0001);
+            }
+        }
+        held
+    }
+
+    fn aim(&self, at: usize, share: f32) -> Aim {
+        let (size, rate, t) = (self.layout.plane, self.def.rate_hz, &self.targets);
+        let mix = |from: V3, to: V3| if share < 1.0 { from + (to - from) * share } else { to };
+        let (p, q) = (t.vector(0, size, at), t.vector(TO, size, at));
+        let (m, n) = (t.vector(NORMAL, size, at), t.vector(TO + NORMAL, size, at));
+        Aim {
+            position: mix(p, q),
+            velocity: (q - p) * rate,
+            // opposite ones have no middle
+            normal: direction(mix(m, n)).0,
+            turning: (n - m) * rate,
+            max_distance: read(t.planes, MAX_DISTANCE * size + at),
+            radius: read(t.planes, RADIUS * size + at),
+            distance: read(t.planes, DISTANCE * size + at),
+        }
+    }
 
     /// The next frame starts where this one ended; after a frame that was taken back (`finite` false), where it began.
-    pub(crate) fn finish_targets(&mut self, _finite: bool) {}
+    pub(crate) fn finish_targets(&mut self, finite: bool) {
+        let (from, rest) = self.targets.planes.split_at_mut((TO * self.layout.plane).min(self.targets.planes.len()));
+        let to = rest.get_mut(..from.len()).unwrap_or(&mut []);
+        if finite {
+            copy(from, to);
+        } else {
+            copy(to, from);
+        }
+    }
 }

@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use taut::field::FieldView;
-use taut::{Cloth, ClothDef, Families, Features, Frame, Vector3, baked};
+use taut::{Cloth, ClothDef, ColliderDef, Families, Features, Frame, Pose, Shape, Target, TargetLimit, Vector3, baked};
 
 struct Counting;
 
@@ -69,13 +69,13 @@ fn the_counter_counts() {
 fn nothing_is_allocated() {
     let grid = common::squares(20, 33, 0.05, Families::ALL);
     let def = ClothDef {
-        features: Features(Features::PULL.0 | Features::MASK.0 | Features::MASS.0),
+        features: Features(Features::ALL.0 & !Features::IMPLICIT.0),
         inertia_radius_m: 0.3,
         sleep_speed_m_s: 1e-3,
         ..ClothDef::default()
     };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
-    let mut bytes = vec![0; 200_000];
+    let mut bytes = vec![0; 400_000];
     let field = [500.0; 4 * 7 * 5];
     let mut file = vec![0; baked::size(7, 5).unwrap()];
     let ((), n) = calls(|| {
@@ -101,7 +101,14 @@ fn nothing_is_allocated() {
             c.set_frame(&moved, 0.5, 0.5).unwrap();
             c.pin_force(0).unwrap();
             assert_eq!(c.pin_forces().count(), c.pin_count());
+            let pose = Pose::at(Vector3::new(0.5, -0.5, 0.01 * f64::from(frame)));
+            let ball = c.add_collider(&ColliderDef::new(Shape::Sphere { radius_m: 0.2 }, pose)).unwrap();
+            c.move_collider(ball, &pose).unwrap();
+            let skin = Target { position_m: Vector3::zeros(), normal: Vector3::new(0.0, 0.0, 1.0) };
+            c.move_targets(Vector3::zeros(), |_| skin).unwrap();
+            c.set_target_limits(|_| TargetLimit { max_distance_m: 2.0, ..TargetLimit::default() }).unwrap();
             c.step().unwrap();
+            c.remove_collider(ball).unwrap();
             if frame % 5 == 0 {
                 c.pin(40 + frame as usize).unwrap();
             }

@@ -44,6 +44,10 @@ mod surroundings;
 
 mod pins;
 
+mod colliders;
+
+mod targets;
+
 mod particle;
 
 mod frame;

@@ -119,6 +119,37 @@ impl Vertices {
     }
 }
 
+/// Vectors that the caller lends for reading: `count` places of `stride` bytes that begin with three floats. They need not
+/// be aligned.
+pub(crate) struct Vectors<'a> {
+    start: *const u8,
+    stride: usize,
+    count: usize,
+    lent: core::marker::PhantomData<&'a u8>,
+}
+
+impl Vectors<'_> {
+    /// # Safety
+    /// `pointer` is NULL, or good for reading `(count - 1) * stride + 12` bytes while this lives.
+    pub unsafe fn new<'a>(pointer: *const core::ffi::c_void, stride: usize, count: usize) -> Result<Vectors<'a>, Code> {
+        if stride < size_of::<[f32; 3]>() {
+            return Err(Code::TAUT_ERROR_SHAPE);
+        }
+        let bytes = count.checked_mul(stride).ok_or(Code::TAUT_ERROR_OUT_OF_RANGE)?;
+        check(pointer.cast::<u8>(), bytes)?;
+        Ok(Vectors { start: pointer.cast(), stride, count, lent: core::marker::PhantomData })
+    }
+
+    /// The vector of a place; zeros past the last one.
+    pub fn get(&self, i: usize) -> [f32; 3] {
+        if i >= self.count {
+            return [0.0; 3];
+        }
+        // SAFETY: within what the caller promised to `new`; every bit pattern is a float.
+        unsafe { ptr::read_unaligned(self.start.add(i * self.stride).cast::<[f32; 3]>()) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,6 +165,27 @@ mod tests {
             assert_eq!(array::<u32>(ptr::dangling(), usize::MAX / 2).unwrap_err(), Code::TAUT_ERROR_OUT_OF_RANGE);
             assert!(Out::<u64>::optional(ptr::null_mut()).is_ok());
             assert!(Out::<u64>::new(ptr::null_mut()).is_err());
+        }
+    }
+
+    #[test]
+    fn lent_vectors_are_read_by_their_stride() {
+        let bytes: [u8; 43] = core::array::from_fn(|i| i as u8);
+        let start = bytes.as_ptr().wrapping_add(1);
+        // SAFETY: (3 - 1) * 15 + 12 = 42 bytes from `start` on are ours.
+        let vectors = unsafe { Vectors::new(start.cast(), 15, 3) }.unwrap();
+        for i in 0..3 {
+            let first = 1 + 15 * i as u8;
+            let expected = [0, 4, 8].map(|a| f32::from_ne_bytes([0, 1, 2, 3].map(|b| first + a + b)));
+            assert_eq!(vectors.get(i).map(f32::to_bits), expected.map(f32::to_bits));
+        }
+        assert_eq!(vectors.get(3), [0.0; 3]);
+        // SAFETY: refused before anything is read.
+        unsafe {
+            assert_eq!(Vectors::new(start.cast(), 11, 3).err(), Some(Code::TAUT_ERROR_SHAPE));
+            assert_eq!(Vectors::new(start.cast(), usize::MAX, 3).err(), Some(Code::TAUT_ERROR_OUT_OF_RANGE));
+            assert_eq!(Vectors::new(start.cast(), usize::MAX / 4, 3).err(), Some(Code::TAUT_ERROR_OUT_OF_RANGE));
+            assert_eq!(Vectors::new(ptr::null(), 12, 3).err(), Some(Code::TAUT_ERROR_NULL_POINTER));
         }
     }
 

@@ -60,6 +60,10 @@ pub enum Code {
     TAUT_ERROR_UNSUPPORTED_WIDTH = -24,
     /// The particle is absent: the mask says so.
     TAUT_ERROR_ABSENT = -25,
+    /// There is no collider of this id (any more).
+    TAUT_ERROR_NO_SUCH_COLLIDER = -26,
+    /// There are TAUT_MAX_COLLIDERS colliders already.
+    TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -112,6 +116,8 @@ rows! {
     TAUT_ERROR_VERSION_MISMATCH c"TAUT_ERROR_VERSION_MISMATCH" VersionMismatch,
     TAUT_ERROR_UNSUPPORTED_WIDTH c"TAUT_ERROR_UNSUPPORTED_WIDTH" UnsupportedWidth,
     TAUT_ERROR_ABSENT c"TAUT_ERROR_ABSENT" Absent,
+    TAUT_ERROR_NO_SUCH_COLLIDER c"TAUT_ERROR_NO_SUCH_COLLIDER" NoSuchCollider,
+    TAUT_ERROR_TOO_MANY_COLLIDERS c"TAUT_ERROR_TOO_MANY_COLLIDERS" TooManyColliders,
 }
 
 /// The codes that only C has.

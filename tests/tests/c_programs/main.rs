@@ -4,6 +4,7 @@
 // ffi/src/types.rs names core so, since the library of ffi has core's name.
 extern crate taut as taut_core;
 
+mod contact;
 mod drape;
 mod examples;
 mod headers;
