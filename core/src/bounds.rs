@@ -1,10 +1,12 @@
 //! The box that a renderer culls by.
 
 use crate::layout::read;
+use crate::mask::is_absent;
 use crate::math::{max, min};
 use crate::{Cloth, Vector3};
 
-/// A box with sides along the axes, in the world in m. Every particle lies in it, and each of its sides touches one.
+/// A box with sides along the axes, in the world in m. Every particle that is there lies in it, and each of its
+/// sides touches one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest x, y and z in m.
@@ -21,6 +23,9 @@ impl Cloth<'_> {
         for (axis, plane) in [&*self.x.x, &*self.x.y, &*self.x.z].into_iter().enumerate() {
             for row in 0..l.rows {
                 for column in 0..l.columns {
+                    if is_absent(self.mask, l.at(row, column)) {
+                        continue;
+                    }
                     let x = read(plane, l.at(row, column));
                     low[axis] = min(x, low[axis]);
                     high[axis] = max(x, high[axis]);

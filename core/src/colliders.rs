@@ -1,6 +1,7 @@
 //! Colliders: their list, ids and poses. What they do to the particles is in `contact`.
 
 use crate::cloth::REACH_M;
+use crate::frame::Motion;
 use crate::layout::{Layout, read, take, write};
 use crate::math::{round16, sqrt};
 use crate::shapes::{SHAPE_NUMBERS, Shape};
@@ -209,6 +210,7 @@ impl Cloth<'_> {
         self.colliders.put(place, SHAPE, &shape);
         self.colliders.put_pose(place, FROM, &pose);
         self.colliders.put_pose(place, TO, &pose);
+        self.wake();
         Ok(ColliderId(generation as u32 * MAX_COLLIDERS as u32 + place as u32))
     }
 
@@ -221,6 +223,9 @@ impl Cloth<'_> {
     pub fn move_collider(&mut self, id: ColliderId, pose: &Pose) -> Result<(), Error> {
         let place = self.colliders.find(id)?;
         let pose = self.local_pose(pose)?;
+        if self.colliders.get(place).is_some_and(|c| c.to != pose) {
+            self.wake();
+        }
         self.colliders.put_pose(place, TO, &pose);
         Ok(())
     }
@@ -234,6 +239,7 @@ impl Cloth<'_> {
         let pose = self.local_pose(pose)?;
         self.colliders.put_pose(place, FROM, &pose);
         self.colliders.put_pose(place, TO, &pose);
+        self.wake();
         Ok(())
     }
 
@@ -246,7 +252,28 @@ impl Cloth<'_> {
         // everything but the generation, so that the state does not remember what is gone
         self.colliders.put(place, 0, &[0.0; COLLIDER_NUMBERS]);
         self.colliders.put(place, GENERATION, &[generation]);
+        self.wake();
         Ok(())
+    }
+
+    /// Carries the colliders along with the frame: where they were; where they go stays in the world, or is carried too.
+    pub(crate) fn carry_colliders(&mut self, motion: &Motion, in_world: bool) {
+        for place in 0..self.layout.max_colliders {
+            let Some(c) = self.colliders.get(place) else {
+                continue;
+            };
+            let carried = |p: &LocalPose| LocalPose {
+                position: motion.carry(p.position.into()).into(),
+                rotation: motion.carry_rotation(p.rotation),
+            };
+            let to = if in_world {
+                LocalPose { position: motion.keep(c.to.position.into()).into(), ..c.to }
+            } else {
+                carried(&c.to)
+            };
+            self.colliders.put_pose(place, FROM, &carried(&c.from));
+            self.colliders.put_pose(place, TO, &to);
+        }
     }
 
     /// A collider as it is now, before the next frame.

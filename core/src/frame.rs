@@ -73,6 +73,8 @@ impl Pose {
 pub(crate) struct Motion {
     /// Rows of the turn that is carried along; none where nothing turns, so that the bits stay.
     turn: Option<[[f64; 3]; 3]>,
+    /// The same as a quaternion x, y, z, w; 0, 0, 0, 1 where nothing turns.
+    quaternion: [f64; 4],
     /// The part of the way that is not carried along.
     felt: [f64; 3],
     /// The whole way.
@@ -83,7 +85,13 @@ impl Motion {
     /// From one pose to another; `linear` and `angular` are the shares (0 to 1) that are felt.
     fn new(from: &Pose, to: &Pose, linear: f64, angular: f64) -> Motion {
         let way = [0, 1, 2].map(|a| to.position[a] - from.position[a]);
-        Motion { turn: turn(from.rotation, to.rotation, 1.0 - angular), felt: way.map(|d| linear * d), way }
+        let quaternion = turn(from.rotation, to.rotation, 1.0 - angular);
+        Motion {
+            turn: quaternion.map(matrix),
+            quaternion: quaternion.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+            felt: way.map(|d| linear * d),
+            way,
+        }
     }
 
     /// A direction or a velocity that is carried along.
@@ -100,6 +108,22 @@ impl Motion {
         less(self.carry_vector(p), self.felt)
     }
 
+    /// The rotation of a collider that is carried along.
+    pub fn carry_rotation(&self, q: [f32; 4]) -> [f32; 4] {
+        if self.turn.is_none() {
+            return q;
+        }
+        let [ax, ay, az, aw] = self.quaternion;
+        let [bx, by, bz, bw] = q.map(f64::from);
+        [
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        ]
+        .map(|x| x as f32)
+    }
+
     /// A place that stays where it is in the world: where a pin, collider or target goes to.
     pub fn keep(&self, p: [f32; 3]) -> [f32; 3] {
         less(p, self.way)
@@ -110,8 +134,8 @@ fn less(p: [f32; 3], d: [f64; 3]) -> [f32; 3] {
     [0, 1, 2].map(|a| (f64::from(p[a]) - d[a]) as f32)
 }
 
-/// The rotation that takes `from` to `to` the shorter way, of which only a share is turned, as the rows of its matrix.
-fn turn(from: [f64; 4], to: [f64; 4], share: f64) -> Option<[[f64; 3]; 3]> {
+/// The rotation that takes `from` to `to` the shorter way, of which only a share is turned; none where nothing turns.
+fn turn(from: [f64; 4], to: [f64; 4], share: f64) -> Option<[f64; 4]> {
     let [ax, ay, az, aw] = to;
     // from, backwards
     let [bx, by, bz, bw] = [-from[0], -from[1], -from[2], from[3]];
@@ -129,12 +153,16 @@ fn turn(from: [f64; 4], to: [f64; 4], share: f64) -> Option<[[f64; 3]; 3]> {
     let sign = if w < 0.0 { -1.0 } else { 1.0 };
     let half = share * libm::atan2(sine, sign * w);
     let (s, w) = (libm::sin(half) * sign / sine, libm::cos(half));
-    let [x, y, z] = [x * s, y * s, z * s];
-    Some([
+    Some([x * s, y * s, z * s, w])
+}
+
+/// The rows of the matrix of a rotation.
+fn matrix([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
+    [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ])
+    ]
 }
 
 impl Cloth<'_> {
@@ -213,5 +241,7 @@ impl Cloth<'_> {
             let to = if in_world { motion.keep(to) } else { motion.carry(to) };
             self.pins.set(i, Pin { particle, from: motion.carry(from), to });
         }
+        self.carry_colliders(motion, in_world);
+        self.carry_targets(motion, in_world);
     }
 }

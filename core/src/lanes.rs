@@ -40,17 +40,6 @@ impl Lanes {
     pub fn abs(self) -> Lanes {
         self.zip(self, |a, _| a.abs())
     }
-
-    #[inline(always)]
-    pub fn over(self, other: Lanes) -> Lanes {
-        self.zip(other, |a, b| a / b)
-    }
-
-    #[inline(always)]
-    pub fn sqrt(self) -> Lanes {
-        let [a, b, c, d] = self.0;
-        Lanes([math::sqrt(a), math::sqrt(b), math::sqrt(c), math::sqrt(d)])
-    }
 }
 
 impl From<[f32; LANES]> for Lanes {

@@ -9,13 +9,14 @@
 use crate::force::Substep;
 use crate::layout::{Layout, read, take, write};
 use crate::limit::Sheet;
+use crate::strain_limit::TARGET;
 use crate::{Cloth, Error};
 
 /// Sweeps of a coarse level.
 const COARSE_SWEEPS: u32 = 4;
 
 /// Most cycles of a substep. More than one is needed only where pins move by several cells in a substep.
-const MOST_CYCLES: u32 = 16;
+const MOST_CYCLES: u32 = 32;
 
 /// Planes of a coarse level: positions and inverse masses. All coarse levels together have at most as many nodes as the
 /// cloth has particles, since each halves at least one side.
@@ -119,10 +120,14 @@ impl<'n> Nodes<'n> {
 impl Cloth<'_> {
     /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
+        // what the sweeps aim at: from there on they act, without a threshold at which they would kick
+        if self.within_limits(c, TARGET) {
+            return;
+        }
         self.begin_limits();
         for _ in 0..MOST_CYCLES {
             self.cycle(c);
-            if self.within_limits(c) {
+            if self.within_limits(c, 1.0) {
                 break;
             }
         }

@@ -1,6 +1,7 @@
 //! Normals of the sheet at the particles, for shading.
 
 use crate::layout::read;
+use crate::mask::is_absent;
 use crate::math::{max, sqrt};
 use crate::{Cloth, Error, Vector3};
 
@@ -8,7 +9,7 @@ impl Cloth<'_> {
     /// Unit normal at a particle: the mean of the normals of its one to four cells, weighted by their areas. That of a cell
     /// with the corners a b (above) and c d (below) is (d - a) x (b - c), twice its vector area, which does not depend on
     /// how the cell is cut into triangles. It points to the side from which u runs to the right and v runs down. Zero where
-    /// the cells have no area, or one that f32 cannot hold.
+    /// the cells have no area, or one that f32 cannot hold; a cell with an absent corner does not count.
     ///
     /// Error: [`Error::NoSuchParticle`].
     pub fn normal(&self, particle: usize) -> Result<Vector3<f32>, Error> {
@@ -45,6 +46,9 @@ impl Cloth<'_> {
         }
         let above = self.layout.at(row - 1, column - 1);
         let below = self.layout.at(row, column - 1);
+        if [above, above + 1, below, below + 1].into_iter().any(|at| is_absent(self.mask, at)) {
+            return [0.0; 3];
+        }
         let ways = |p: &[f32]| (read(p, below + 1) - read(p, above), read(p, above + 1) - read(p, below));
         let ((px, qx), (py, qy), (pz, qz)) = (ways(self.x.x), ways(self.x.y), ways(self.x.z));
         [py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx]

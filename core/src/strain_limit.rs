@@ -86,11 +86,11 @@ impl Cloth<'_> {
         }
     }
 
-    /// Whether no structural link is longer than its limit.
-    pub(crate) fn within_limits(&self, c: &Substep) -> bool {
+    /// Whether no structural link is strained by more than a share of its limit.
+    pub(crate) fn within_limits(&self, c: &Substep, share: f32) -> bool {
         let l = self.layout;
         let [warp, weft, _] = self.def.strain_limit;
-        let [u, v] = [c.rest_u * (1.0 + weft), c.rest_v * (1.0 + warp)];
+        let [u, v] = [c.rest_u * (1.0 + share * weft), c.rest_v * (1.0 + share * warp)];
         let p = self.x.view();
         let long = |at: usize, step: usize, n: usize, limit: f32| {
             let (xs, ys, zs) = (span(p.x, at, n), span(p.y, at, n), span(p.z, at, n));

@@ -5,6 +5,7 @@
 //! engines. Velocity against a limit, relative to the target, is taken; along it, it is kept.
 
 use crate::force::Substep;
+use crate::frame::Motion;
 use crate::layout::{Layout, copy, read, span, take, write};
 use crate::math::{max, min, sqrt};
 use crate::shapes::{direction, length};
@@ -186,6 +187,7 @@ impl Cloth<'_> {
             write(self.targets.planes, RADIUS * l.plane + at, limit.backstop_radius_m);
             write(self.targets.planes, DISTANCE * l.plane + at, limit.backstop_distance_m);
         }
+        self.wake();
         Ok(())
     }
 
@@ -197,6 +199,29 @@ impl Cloth<'_> {
     /// than 1e6 m from the cloth's origin, a normal of another length); then nothing is changed.
     pub fn move_targets(&mut self, base_m: Vector3<f64>, target: impl Fn(usize) -> Target) -> Result<(), Error> {
         self.put_targets(base_m, target, false)
+    }
+
+    /// Carries the targets along with the frame: where they were; where they go stays in the world, or is carried too.
+    pub(crate) fn carry_targets(&mut self, motion: &Motion, in_world: bool) {
+        let l = self.layout;
+        if !l.targets {
+            return;
+        }
+        for row in 0..l.rows {
+            for column in 0..l.columns {
+                let at = l.at(row, column);
+                for from in [0, TO] {
+                    let (p, n) =
+                        (self.targets.vector(from, l.plane, at), self.targets.vector(from + NORMAL, l.plane, at));
+                    let stays = from == TO && in_world;
+                    let p = if stays { motion.keep(p.into()) } else { motion.carry(p.into()) };
+                    self.targets.put(from, l.plane, at, p.into());
+                    if !stays {
+                        self.targets.put(from + NORMAL, l.plane, at, motion.carry_vector(n.into()).into());
+                    }
+                }
+            }
+        }
     }
 
     /// Puts the targets somewhere at once, with no way and no velocity between: for the first frame and for teleports.
@@ -231,6 +256,7 @@ impl Cloth<'_> {
         for particle in 0..self.grid.particles() {
             local(self, particle)?;
         }
+        self.wake();
         for particle in 0..self.grid.particles() {
             let (at, (position, normal)) = (l.place(particle)?, local(self, particle)?);
             for from in [0, TO] {
