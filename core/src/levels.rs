@@ -120,8 +120,8 @@ impl<'n> Nodes<'n> {
 impl Cloth<'_> {
     /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
-        // what the sweeps aim at: from there on they act, without a threshold at which they would kick
-        if self.within_limits(c, TARGET) {
+        // only where a cycle would move nothing it is left out: a threshold above that would kick
+        if self.within_limits(c, TARGET) && self.diagonals_within(c) && self.tethers_are_slack() {
             return;
         }
         self.begin_limits();

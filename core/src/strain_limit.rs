@@ -2,7 +2,7 @@
 //! far as the sweeps reach. What is moved is also given to the velocity, x += D and v += D/dt.
 
 use crate::force::Substep;
-use crate::layout::{Layout, span, take};
+use crate::layout::{Layout, read, span, take};
 use crate::limit::{Reach, Sheet};
 use crate::mask::is_absent;
 use crate::{Cloth, Error};
@@ -108,6 +108,30 @@ impl Cloth<'_> {
         for row in 0..l.rows {
             let at = l.row(row);
             if long(at, 1, l.columns.saturating_sub(1), u) || (row + 1 < l.rows && long(at, l.stride, l.columns, v)) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether no diagonal is longer than what the sweeps aim at.
+    pub(crate) fn diagonals_within(&self, c: &Substep) -> bool {
+        let l = self.layout;
+        let limit = c.rest_diagonal * (1.0 + TARGET * self.def.strain_limit[2]);
+        let p = self.x.view();
+        let mut long = false;
+        for row in 0..l.rows.saturating_sub(1) {
+            let n = l.columns.saturating_sub(1);
+            // to the lower right from the first particle on, to the lower left from the second
+            for (at, other) in [(l.row(row), l.row(row + 1) + 1), (l.row(row) + 1, l.row(row + 1))] {
+                for i in 0..n {
+                    let way = |p: &[f32]| read(p, other + i) - read(p, at + i);
+                    let (dx, dy, dz) = (way(p.x), way(p.y), way(p.z));
+                    let both = !is_absent(self.mask, at + i) && !is_absent(self.mask, other + i);
+                    long |= both && dx * dx + dy * dy + dz * dz > limit * limit;
+                }
+            }
+            if long {
                 return false;
             }
         }

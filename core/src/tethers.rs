@@ -117,6 +117,21 @@ impl Cloth<'_> {
         self.each_tethered(|_, _, _, _| ());
     }
 
+    /// Whether no tether pulls.
+    pub(crate) fn tethers_are_slack(&self) -> bool {
+        let l = self.layout;
+        self.pins.count == 0
+            || (0..l.rows).all(|row| {
+                (0..l.columns).all(|column| {
+                    let at = l.at(row, column);
+                    read(self.inverse, at) == 0.0 || {
+                        let x = self.local(at);
+                        self.tethered(at, x) == x
+                    }
+                })
+            })
+    }
+
     fn each_tethered(&mut self, moved: impl Fn(&mut Self, usize, [f32; 3], [f32; 3])) {
         if self.pins.count == 0 {
             return;
