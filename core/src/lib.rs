@@ -54,7 +54,8 @@ mod strain_limit;
 mod targets;
 mod tethers;
 
-pub use budget::{BEND_SHARE, BudgetReport, TUNED_SHARE};
+pub use air::Air;
+pub use budget::{BEND_SHARE, BudgetReport, HINGE_SHARE, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};
 pub use colliders::MAX_COLLIDERS;
 pub use def::{Budget, ClothDef, Features, Solver};

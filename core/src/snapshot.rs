@@ -173,7 +173,7 @@ impl Cloth<'_> {
                 next += l.columns;
             }
         }
-        let damping = self.ambient.damping();
+        let (damping, drag) = (self.ambient.damping(), self.drag_share());
         self.ambient = Ambient::new(&self.def);
         if flags & AMBIENT != 0 {
             for to in &mut self.ambient.numbers {
@@ -182,7 +182,7 @@ impl Cloth<'_> {
             }
             self.ambient.changed = true;
         }
-        self.stale |= damping != self.ambient.damping();
+        self.stale |= damping != self.ambient.damping() || drag != self.drag_share();
         for part in [&mut *self.colliders.numbers, &mut *self.targets.planes, self.implicit.state_mut()] {
             for to in part {
                 *to = number(next);
