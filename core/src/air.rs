@@ -13,8 +13,9 @@
 //! **It only damps.** Let R = 1/2 rho |a.v| in kg/s, w the mean 1/M of the corners. The substep takes the shares
 //! k = dt w Cd R of v by drag and l = dt w Cl R across v by lift. A corner belongs to four cells at most, so the kinetic
 //! energy relative to the air, sum of M |v|^2 / 2, does not grow in the substep if k^2 + l^2 <= 2 k in every cell. So l is
-//! cut to [`Cloth::drag_share`], which is below 1, l^2 is added to k (an explicit step along a circle would leave it
-//! outwards), and k is cut to the same share: then k^2 <= k and l^2 <= k. The budget counts the share as damping.
+//! cut to [`Cloth::drag_share`], which is below 1, k is raised to l^2 where drag is as weak as that (an explicit step along
+//! a circle leaves it outwards), and cut to the same share: then k^2 <= k and l^2 <= k. The budget counts the share as
+//! damping.
 
 use crate::ambient::AIR_AT;
 use crate::force::View;
@@ -274,7 +275,7 @@ impl<'a> Cells<'a> {
             let rate = c.half_density * across.abs();
             let limit = c.limit / max(inverse, HELD);
             let lift = min(c.lift * rate, limit);
-            let drag = min(c.drag * rate + lift * lift * (c.dt * inverse), limit);
+            let drag = min(max(c.drag * rate, lift * lift * (c.dt * inverse)), limit);
             // 1 / (A |v|)
             let scale = 1.0 / sqrt(max(area2 * speed2, TINY));
             let along = drag - lift * (scale * across.abs());
