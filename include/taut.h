@@ -92,10 +92,10 @@
 // Forces on single particles (taut_cloth_add_force).
 #define TAUT_FEATURE_PULL 1
 
-// Air: drag, lift and wind.
+// Air: drag, lift and wind (taut_cloth_set_air).
 #define TAUT_FEATURE_AIR 2
 
-// Hinge bending.
+// Hinge bending of the rigidity taut_cloth_def.hinge_rigidity_n_m.
 #define TAUT_FEATURE_HINGE 4
 
 // Tethers to the nearest pins.
@@ -396,7 +396,30 @@ typedef struct {
     float cut_fraction;
     // Inertia that the inertia field adds, as a share of the mass of the free particles.
     float inertia_added;
+    // Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
+    float hinge_fraction;
 } taut_budget_report;
+
+// The air around a cloth: drag and lift by the velocity of its cells relative to the wind. Comes from taut_air_default(),
+// then change what you need.
+typedef struct {
+    // Velocity of the wind in m/s, at most 1e3 in size. Default 0, 0, 0.
+    float wind_m_s[3];
+    // Density in kg/m^3, 0 to 1e4; 0 = no air. Default 1.2.
+    float density_kg_m3;
+    // Drag coefficient, 0 to 100: the drag of an area A at right angles to the flow is 0.5 density drag A speed^2. Default
+    // 1.2, that of a square plate.
+    float drag;
+    // Lift coefficient, 0 to 100: the lift of an area A at the angle of attack a is 0.5 density lift A speed^2 sin(a) cos(a).
+    // Default 1.2.
+    float lift;
+    // Gusts as a share of the wind's speed, 0 to 1: each component of the wind varies smoothly by up to so much. Default 0.
+    float gust;
+    // How often a gust turns per second, 0 to 1e3. Default 1.
+    float gust_hz;
+    // Which gusts: they are a function of the seed and the step index alone. Default 0.
+    uint32_t seed;
+} taut_air;
 
 // The positions of a cloth without a copy: particle (row, column) is number row * row_stride + column of x, y and z, in m
 // in the local frame; add origin_m for the world. Valid until the next call that is handed the cloth without const.
@@ -631,6 +654,25 @@ taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particle, const 
 // TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 // Threads: changes the cloth.
 taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
+
+// Still air of 1.2 kg/m^3, drag and lift 1.2: what a cloth with TAUT_FEATURE_AIR starts with.
+//
+// Threads: any.
+taut_air taut_air_default(void);
+
+// Sets the air from the next step on. Needs TAUT_FEATURE_AIR. May be called every frame; but the budget counts drag as
+// damping, in steps of a factor of 2, so a wind that grows a lot makes the next step cut the stiffness anew.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE. Then the former air stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_air(taut_cloth *cloth, const taut_air *air);
+
+// The air as it is now. Needs TAUT_FEATURE_AIR.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF.
+// Threads: reads the cloth.
+taut_result taut_cloth_air(const taut_cloth *cloth, taut_air *out);
 
 // Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
 // calls give the same bits on every machine, whatever floating-point modes the engine has set.

@@ -190,3 +190,85 @@ fn masked_row(l: &Layout, row: usize, k: &Factors, x: &[f32], mask: &[f32], forc
         to[c] += weights.force(|i, j| rows[around(i, j)][c]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::vec;
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::{Features, GridDef, noise};
+
+    const K: Factors = Factors { u: 3.0, v: 2.0, twist: 5.0 };
+
+    fn layout(rows: u32, columns: u32) -> Layout {
+        let grid = Grid::new(&GridDef { rows, columns, ..GridDef::default() }).unwrap();
+        Layout::new(&grid, &ClothDef { features: Features::MASK, ..ClothDef::default() })
+    }
+
+    /// Something at the particles of a block of rows x columns of the grid, 0 elsewhere.
+    fn plane(l: &Layout, rows: usize, columns: usize, f: impl Fn(u32) -> f32) -> Vec<f32> {
+        let mut plane = vec![0.0; l.plane];
+        for row in 0..rows {
+            for column in 0..columns {
+                plane[l.at(row, column)] = f((100 * row + column) as u32);
+            }
+        }
+        plane
+    }
+
+    /// A grid of which only a block is present bends as a grid of that size: no term reaches an absent particle, wherever it is.
+    #[test]
+    fn a_masked_block_is_a_smaller_grid() {
+        let large = layout(12, 37);
+        let somewhere = |i: u32| noise::gaussian(1, i);
+        for (rows, columns) in [(2, 2), (3, 5), (5, 3), (9, 20), (12, 37)] {
+            let x = plane(&large, 12, 37, somewhere);
+            let mask = plane(&large, rows, columns, |_| 1.0);
+            let mut found = vec![0.0; large.plane];
+            for row in 0..12 {
+                masked_row(&large, row, &K, &x, &mask, &mut found);
+            }
+            let small = layout(rows as u32, columns as u32);
+            let x = plane(&small, rows, columns, somewhere);
+            let mut expected = vec![0.0; small.plane];
+            for row in 0..rows {
+                full_row(&small, row, &K, &x, &mut expected);
+            }
+            for row in 0..12 {
+                for column in 0..37 {
+                    let inside = row < rows && column < columns;
+                    let f = if inside { expected[small.at(row, column)] } else { 0.0 };
+                    assert_eq!(found[large.at(row, column)], f, "{rows} x {columns}: {row}, {column}");
+                }
+            }
+        }
+    }
+
+    /// A hole in the middle: nothing pulls at it, and what is left still keeps its momentum.
+    #[test]
+    fn a_hole_is_left_alone() {
+        let l = layout(9, 11);
+        let x = plane(&l, 9, 11, |i| noise::gaussian(2, i));
+        let mut mask = plane(&l, 9, 11, |_| 1.0);
+        mask[l.at(4, 5)] = 0.0;
+        let mut forces = vec![0.0; l.plane];
+        for row in 0..9 {
+            masked_row(&l, row, &K, &x, &mask, &mut forces);
+        }
+        assert_eq!(forces[l.at(4, 5)], 0.0);
+        let (sum, size) = forces.iter().fold((0.0, 0.0), |(s, a), f| (s + f, a + f.abs()));
+        assert!(sum.abs() < 1e-5 * size, "{sum} of {size}");
+        // what the particle does is not felt
+        let before = forces.clone();
+        let mut moved = x.clone();
+        moved[l.at(4, 5)] = 100.0;
+        forces.fill(0.0);
+        for row in 0..9 {
+            masked_row(&l, row, &K, &moved, &mask, &mut forces);
+        }
+        assert_eq!(forces, before);
+    }
+}

@@ -43,6 +43,8 @@ mod pins;
 
 mod particle;
 
+mod air;
+
 mod step;
 
 mod read;

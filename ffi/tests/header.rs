@@ -47,5 +47,5 @@ fn every_function_says_how_it_fails_and_which_threads_may_call_it() {
             comment.clear();
         }
     }
-    assert_eq!(functions, 40);
+    assert_eq!(functions, 43);
 }
