@@ -109,10 +109,10 @@
 // Forces on single particles (taut_cloth_add_force).
 #define TAUT_FEATURE_PULL 1
 
-// Air: drag, lift and wind.
+// Air: drag, lift and wind (taut_cloth_set_air).
 #define TAUT_FEATURE_AIR 2
 
-// Hinge bending.
+// Hinge bending of the rigidity taut_cloth_def.hinge_rigidity_n_m.
 #define TAUT_FEATURE_HINGE 4
 
 // Tethers to the nearest pins.
@@ -441,6 +441,8 @@ typedef struct {
     float cut_fraction;
     // Inertia that the inertia field adds, as a share of the mass of the free particles.
     float inertia_added;
+    // Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
+    float hinge_fraction;
 } taut_budget_report;
 
 // Where a cloth's frame is in the world.
@@ -873,6 +875,25 @@ TAUT_API taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particl
 // TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 // Threads: changes the cloth.
 TAUT_API taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
+
+// Still air of 1.2 kg/m^3, drag and lift 1.2: what a cloth with TAUT_FEATURE_AIR starts with.
+//
+// Threads: any.
+taut_air taut_air_default(void);
+
+// Sets the air from the next step on. Needs TAUT_FEATURE_AIR. May be called every frame; but the budget counts drag as
+// damping, in steps of a factor of 2, so a wind that grows a lot makes the next step cut the stiffness anew.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
+// TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE. Then the former air stays.
+// Threads: changes the cloth.
+taut_result taut_cloth_set_air(taut_cloth *cloth, const taut_air *air);
+
+// The air as it is now. Needs TAUT_FEATURE_AIR.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF.
+// Threads: reads the cloth.
+taut_result taut_cloth_air(const taut_cloth *cloth, taut_air *out);
 
 // Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
 // calls give the same bits on every machine, whatever floating-point modes the engine has set.

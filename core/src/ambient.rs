@@ -1,4 +1,4 @@
-use crate::{Cloth, ClothDef, Error};
+use crate::{Air, Cloth, ClothDef, Error};
 
 /// What surrounds a cloth and may change while it runs: gravity, damping, air, rest lengths. It is part of the state once
 /// it was changed.
@@ -23,6 +23,9 @@ impl Ambient {
         let [x, y, z] = def.gravity_m_s2;
         let first = [x, y, z, def.damping_per_s];
         for (to, from) in numbers.iter_mut().zip(first) {
+            *to = from;
+        }
+        for (to, from) in numbers.iter_mut().skip(AIR_AT).zip(Air::default().numbers()) {
             *to = from;
         }
         for scale in numbers.iter_mut().skip(REST_AT) {
@@ -51,6 +54,7 @@ impl Ambient {
     /// Checks what may be anything, as the setters do. Errors: theirs.
     pub fn check(&self, def: &ClothDef) -> Result<(), Error> {
         ClothDef { gravity_m_s2: self.gravity(), damping_per_s: self.damping(), ..*def }.check()?;
+        crate::Air::from_numbers(|i| self.get(AIR_AT + i)).check()?;
         check_scale(self.rest_scale())
     }
 

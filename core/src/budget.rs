@@ -6,6 +6,9 @@
 //! omega^2 <= max_i lambda_max(B_i) / M_i for any masses. Both budgets take n from the flat sheet (2 x 2 eigenvalue), 0.8
 //! and 0.35 of the limit. The latter holds for every shape of the cloth: n n^T <= 1 gives sum (1 + [other end free]) k,
 //! which is the trace of that 2 x 2 matrix and so at most twice its larger eigenvalue: 0.7 of the limit.
+//!
+//! Hinges add their own bound to that of every particle (see hinge.rs) and may use [`HINGE_SHARE`] of what is allowed: above
+//! it the whole rigidity is scaled down. The drag of the air counts as damping.
 
 use crate::field::MAX_STIFFNESS;
 use crate::force::Springs;
@@ -28,6 +31,8 @@ pub const TUNED_SHARE: f32 = 0.8;
 /// step to step, and near the limit the fastest modes then draw energy from the stepping itself: at 0.5 a crumpled sheet
 /// boils for ever, in spite of damping of 1/s. At 0.35 it comes to rest (docs/budget.md).
 pub const CERTIFIED_SHARE: f32 = 0.35;
+/// The hinges may use at most this share of the limit: the springs need it more, or the cloth stretches.
+pub const HINGE_SHARE: f32 = 0.25;
 
 /// What the budget made of the stiffness field.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -40,13 +45,18 @@ pub struct BudgetReport {
     pub cut_fraction: f32,
     /// Inertia that the inertia field adds, as a share of the mass of the free particles.
     pub inertia_added: f32,
+    /// Share of the hinge rigidity that is kept, 0 to 1: at the finest grids even thin cloth is too stiff for a game's step.
+    pub hinge_fraction: f32,
 }
 
-/// Writes the springs of a target field after the budget. `scale` is scratch of one plane.
+/// Writes the springs of a target field after the budget. `hinges` is what the hinges add to a particle at most in N/m,
+/// `scale` is scratch of one plane.
+#[allow(clippy::too_many_arguments)] // they are planes of one cloth that are borrowed apart
 pub(crate) fn project(
     body: &Body<'_>,
     target: &[&mut [f32]; 4],
     inverse: &[f32],
+    hinges: f64,
     springs: &mut Springs<'_>,
     scale: &mut [f32],
 ) -> BudgetReport {
@@ -58,13 +68,24 @@ pub(crate) fn project(
         Budget::Certified => CERTIFIED_SHARE,
         Budget::Tuned => TUNED_SHARE,
     };
-    let mut worst = 0.0f32;
+    let (mut lightest, mut worst) = (0.0f32, 0.0f32);
+    for row in 0..l.rows {
+        for column in 0..l.columns {
+            lightest = max(read(inverse, l.at(row, column)), lightest);
+        }
+    }
+    let top = f64::from(HINGE_SHARE * share * allowed) / f64::from(max(lightest, f32::MIN_POSITIVE));
+    let hinge_fraction = if hinges > top { top / hinges } else { 1.0 };
+    // held to finite numbers, so that nothing times 0 is NaN where all is pinned
+    let [hinges, kept] = [hinges, hinges * hinge_fraction].map(|h| min(h as f32, f32::MAX));
     for row in 0..l.rows {
         for column in 0..l.columns {
             let at = l.at(row, column);
-            let omega2 = bound(body, at, inverse, springs) * read(inverse, at);
-            worst = max(worst, omega2);
-            let s = share * allowed / max(omega2, f32::MIN_POSITIVE);
+            let w = read(inverse, at);
+            let omega2 = bound(body, at, inverse, springs) * w;
+            let hinge2 = hinges * w;
+            worst = max(worst, max(omega2 + hinge2, hinge2 / HINGE_SHARE));
+            let s = (share * allowed - kept * w) / max(omega2, f32::MIN_POSITIVE);
             write(scale, at, min(s, 1.0));
         }
     }
@@ -97,6 +118,7 @@ pub(crate) fn project(
         max_dt_s: max_dt,
         cut_fraction: if before > 0.0 { (1.0 - after / before) as f32 } else { 0.0 },
         inertia_added: if mass > 0.0 { (inertia / mass - 1.0) as f32 } else { 0.0 },
+        hinge_fraction: hinge_fraction as f32,
     }
 }
 

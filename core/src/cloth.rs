@@ -284,8 +284,9 @@ impl<'a> Cloth<'a> {
 
     fn compute_springs(&mut self, keep_momentum: bool) {
         let l = self.layout;
-        // the damping may have been changed while running
-        let def = ClothDef { damping_per_s: self.ambient.damping(), ..self.def };
+        // the damping may have been changed while running, and the air damps too
+        let def = ClothDef { damping_per_s: self.ambient.damping() + self.drag_per_s(), ..self.def };
+        let hinges = self.hinge_bound();
         let (former, rest) = self.good.split_at_mut(l.plane.min(self.good.len()));
         let scratch = rest.get_mut(..l.plane).unwrap_or(&mut []);
         copy(former, self.inverse);
@@ -315,7 +316,7 @@ impl<'a> Cloth<'a> {
                 }
             }
         }
-        self.report = budget::project(&body, &self.target, self.inverse, &mut self.springs, scratch);
+        self.report = budget::project(&body, &self.target, self.inverse, hinges, &mut self.springs, scratch);
         if l.has_tethers() {
             self.attach_tethers();
         }

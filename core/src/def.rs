@@ -101,7 +101,7 @@ pub struct ClothDef {
     pub strain_limit: [f32; 3],
     /// Passes of the strain limit in each substep, 1 to 64. Default 2.
     pub strain_passes: u32,
-    /// Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
+    /// Bending rigidity D of the hinges in N m, 0 to 1e6; see [`crate::BudgetReport::hinge_fraction`]. Default 1e-5.
     pub hinge_rigidity_n_m: f32,
     /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to 1e3;
     /// 0 = never. Default 0.

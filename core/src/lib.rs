@@ -68,8 +68,9 @@ mod targets;
 mod tethers;
 mod width;
 
+pub use air::Air;
 pub use bounds::Bounds;
-pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, TUNED_SHARE};
+pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, HINGE_SHARE, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};
 pub use colliders::{ColliderDef, ColliderId, MAX_COLLIDERS, Pose};
 pub use def::{Budget, ClothDef, Features, Solver};

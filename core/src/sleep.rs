@@ -69,7 +69,9 @@ impl Cloth<'_> {
         if !self.sleep.is_on() {
             return;
         }
-        if !finite || !self.is_slow() {
+        // a gust may come at any time
+        let gusty = self.air().is_ok_and(|air| air.gust > 0.0);
+        if !finite || gusty || !self.is_slow() {
             self.wake();
             return;
         }

@@ -228,7 +228,9 @@ impl Cloth<'_> {
         }
         // the budget depends on them
         self.stale |= self.ambient.damping() != ambient.damping() || self.ambient.rest_scale() != ambient.rest_scale();
+        let drag = self.drag_share();
         self.ambient = ambient;
+        self.stale |= drag != self.drag_share();
         self.pose = pose;
         let parts = [
             &mut *self.colliders.numbers,

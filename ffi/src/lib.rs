@@ -50,6 +50,7 @@ mod targets;
 
 mod particle;
 
+mod air;
 mod frame;
 
 mod step;

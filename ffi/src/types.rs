@@ -17,9 +17,9 @@ pub const TAUT_FAMILY_ALL: u32 = 7;
 pub const TAUT_FEATURE_NONE: u32 = 0;
 /// Forces on single particles (taut_cloth_add_force).
 pub const TAUT_FEATURE_PULL: u32 = 1;
-/// Air: drag, lift and wind.
+/// Air: drag, lift and wind (taut_cloth_set_air).
 pub const TAUT_FEATURE_AIR: u32 = 2;
-/// Hinge bending.
+/// Hinge bending of the rigidity taut_cloth_def.hinge_rigidity_n_m.
 pub const TAUT_FEATURE_HINGE: u32 = 4;
 /// Tethers to the nearest pins.
 pub const TAUT_FEATURE_TETHERS: u32 = 8;
@@ -239,6 +239,31 @@ pub struct BudgetReport {
     pub cut_fraction: f32,
     /// Inertia that the inertia field adds, as a share of the mass of the free particles.
     pub inertia_added: f32,
+    /// Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
+    pub hinge_fraction: f32,
+}
+
+/// The air around a cloth: drag and lift by the velocity of its cells relative to the wind. Comes from taut_air_default(),
+/// then change what you need.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Air {
+    /// Velocity of the wind in m/s, at most 1e3 in size. Default 0, 0, 0.
+    pub wind_m_s: [f32; 3],
+    /// Density in kg/m^3, 0 to 1e4; 0 = no air. Default 1.2.
+    pub density_kg_m3: f32,
+    /// Drag coefficient, 0 to 100: the drag of an area A at right angles to the flow is 0.5 density drag A speed^2. Default
+    /// 1.2, that of a square plate.
+    pub drag: f32,
+    /// Lift coefficient, 0 to 100: the lift of an area A at the angle of attack a is 0.5 density lift A speed^2 sin(a) cos(a).
+    /// Default 1.2.
+    pub lift: f32,
+    /// Gusts as a share of the wind's speed, 0 to 1: each component of the wind varies smoothly by up to so much. Default 0.
+    pub gust: f32,
+    /// How often a gust turns per second, 0 to 1e3. Default 1.
+    pub gust_hz: f32,
+    /// Which gusts: they are a function of the seed and the step index alone. Default 0.
+    pub seed: u32,
 }
 
 /// What a baked field tells about its fabric beside the stiffness.
@@ -338,6 +363,21 @@ impl From<taut_core::BudgetReport> for BudgetReport {
             max_dt_s: r.max_dt_s,
             cut_fraction: r.cut_fraction,
             inertia_added: r.inertia_added,
+            hinge_fraction: r.hinge_fraction,
         }
+    }
+}
+
+impl From<taut_core::Air> for Air {
+    fn from(a: taut_core::Air) -> Air {
+        let taut_core::Air { wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed } = a;
+        Air { wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed }
+    }
+}
+
+impl From<Air> for taut_core::Air {
+    fn from(a: Air) -> taut_core::Air {
+        let Air { wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed } = a;
+        taut_core::Air { wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed }
     }
 }
