@@ -10,7 +10,7 @@ use crate::field::MAX_STIFFNESS;
 use crate::force::Springs;
 use crate::layout::{Layout, read, write};
 use crate::math::{max, min, sqrt};
-use crate::{Budget, ClothDef, Grid};
+use crate::{Budget, ClothDef, Grid, Solver};
 
 /// The bend channel is cut to at most this share of the mean structural stiffness of the particle: Provot's bend springs
 /// also resist stretch, and a fit that may use them for that hangs the load on them.
@@ -47,6 +47,8 @@ pub(crate) fn project(
 ) -> BudgetReport {
     average(l, target, springs);
     let dt = def.dt_s();
+    // an implicit solver is stable with the stiffness as it is
+    let explicit = def.solver == Solver::SymplecticEuler;
     let allowed = 4.0 / (dt * dt) - 2.0 * def.damping_per_s / dt;
     let share = match def.budget {
         Budget::Certified => CERTIFIED_SHARE,
@@ -59,7 +61,7 @@ pub(crate) fn project(
             let omega2 = bound(grid, def.budget, l, at, inverse, springs) * read(inverse, at);
             worst = max(worst, omega2);
             let s = share * allowed / max(omega2, f32::MIN_POSITIVE);
-            write(scale, at, min(s, 1.0));
+            write(scale, at, if explicit { min(s, 1.0) } else { 1.0 });
         }
     }
     let (mut before, mut after) = (0.0f64, 0.0f64);
@@ -85,7 +87,7 @@ pub(crate) fn project(
     // omega^2 dt^2 + 2 c dt share = 4 share, solved for dt without cancellation
     let w = f64::from(worst) / f64::from(share);
     let c = f64::from(def.damping_per_s);
-    let max_dt = if w > 0.0 { (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32 } else { f32::INFINITY };
+    let max_dt = if explicit && w > 0.0 { (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32 } else { f32::INFINITY };
     BudgetReport {
         dt_s: dt,
         max_dt_s: max_dt,

@@ -149,7 +149,7 @@ impl<'a> Cloth<'a> {
         self.ambient = Ambient::new(&self.def);
         self.colliders.numbers.fill(0.0);
         self.targets.planes.fill(0.0);
-        self.implicit.planes.fill(0.0);
+        self.implicit.reset();
         self.step_index = 0;
         self.stale = true;
     }

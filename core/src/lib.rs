@@ -38,7 +38,7 @@ mod force;
 mod grid;
 mod hash;
 mod hinge;
-mod implicit;
+pub mod implicit;
 mod inertia;
 mod lanes;
 mod layout;
