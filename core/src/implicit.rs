@@ -15,7 +15,8 @@
 //! the right side; their rows are filtered out.
 
 mod blocks;
-mod gradients;
+mod coarse;
+pub mod gradients;
 pub mod integrate;
 mod operator;
 
@@ -34,6 +35,7 @@ pub(crate) struct Implicit<'a> {
     state: usize,
     /// The change of the velocities that is solved for, in m/s.
     change: Planes<'a>,
+    base: Planes<'a>,
     /// Residual in N s, direction of search in m/s, and the operator times it in N s.
     residual: Planes<'a>,
     search: Planes<'a>,
@@ -41,6 +43,8 @@ pub(crate) struct Implicit<'a> {
     linear: Linear<'a>,
     /// The inverses of the diagonal blocks in 1/kg: xx, yy, zz, xy, xz, yz.
     blocks: [&'a mut [f32]; 6],
+    /// The levels of the preconditioner.
+    coarse: &'a mut [f32],
 }
 
 fn planes<'a>(block: &mut &'a mut [f32], n: usize) -> Result<Planes<'a>, Error> {
@@ -51,7 +55,7 @@ impl<'a> Implicit<'a> {
     /// f32 numbers that they need.
     pub fn numbers(l: &Layout) -> usize {
         // history 6, change 3, residual 3, search 3, image 3, mass 1, blocks 6, two of each spring
-        if l.implicit { FLAGS + (25 + 2 * l.spring_planes()) * l.plane } else { 0 }
+        if l.implicit { FLAGS + (29 + 2 * l.spring_planes()) * l.plane + coarse::numbers(l) } else { 0 }
     }
 
     pub fn new(l: &Layout, block: &mut &'a mut [f32]) -> Result<Self, Error> {
@@ -61,11 +65,13 @@ impl<'a> Implicit<'a> {
             history: take(block, flags + 6 * n)?,
             state: if l.bdf2 { flags + 6 * n } else { 0 },
             change: planes(block, n)?,
+            base: planes(block, n)?,
             residual: planes(block, n)?,
             search: planes(block, n)?,
             image: planes(block, n)?,
             linear: Linear::new(l, n, block)?,
             blocks: [take(block, n)?, take(block, n)?, take(block, n)?, take(block, n)?, take(block, n)?, take(block, n)?],
+            coarse: take(block, if l.implicit { coarse::numbers(l) } else { 0 })?,
         })
     }
 

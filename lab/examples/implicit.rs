@@ -56,21 +56,26 @@ fn main() {
     let n: u32 = std::env::args().nth(1).map_or(32, |s| s.parse().unwrap());
     let edge = std::env::args().nth(2).is_some_and(|s| s == "edge");
     let thetas: Vec<f32> = std::env::args().nth(3).map_or(vec![0.0], |s| s.split(',').map(|x| x.parse().unwrap()).collect());
-    for (name, k, density, sub) in [("denim", [2028.0, 410.0, 107.0, 1.0], 0.324, 96u32), ("woven", [3900.0, 3900.0, 60.0, 1.0], 0.2, 160)] {
+    let lv: u32 = std::env::args().nth(6).map_or(1, |s| s.parse().unwrap());
+    taut::implicit::gradients::LEVELS.store(lv, std::sync::atomic::Ordering::Relaxed);
+    for (name, k, density, sub) in [("woven", [3900.0, 3900.0, 60.0, 1.0], 0.2, 160)] {
         let base = ClothDef { density_kg_m2: density, speed_limit: 0.0, features: Features::IMPLICIT, ..ClothDef::default() };
         let mut reference = Vec::new();
         let def = ClothDef { substeps: sub, features: Features::NONE, ..base };
         let o = run(&def, n, k, edge, None, &mut reference);
         println!("{name} explicit {sub}: rest {:.2} peak {:.2} ke1 {:.3} ke {:.3} us {:.0}", 100.0 * o.rest, 100.0 * o.peak, o.ke1, o.ke, o.us);
         let r = o;
-        for theta in &thetas {
+        let passes: Vec<u32> = std::env::args().nth(4).map_or(vec![1], |s| s.split(',').map(|x| x.parse().unwrap()).collect());
+        let its: Vec<u32> = std::env::args().nth(5).map_or(vec![20, 80, 300], |s| s.split(',').map(|x| x.parse().unwrap()).collect());
+        for (theta, p) in thetas.iter().flat_map(|t| passes.iter().map(move |p| (t, *p))) {
+            taut::implicit::integrate::PASSES.store(p, std::sync::atomic::Ordering::Relaxed);
             taut::implicit::integrate::THETA.store(theta.to_bits(), std::sync::atomic::Ordering::Relaxed);
             for solver in [Solver::ImplicitEuler, Solver::Bdf2] {
-                for substeps in [1, 2, 4] {
-                    for it in [10, 20, 40, 80] {
+                for substeps in [1, 2] {
+                    for it in its.clone() {
                         let def = ClothDef { solver, substeps, cg_iterations: it, ..base };
                         let o = run(&def, n, k, edge, Some(&reference), &mut Vec::new());
-                        println!("{theta} {solver:?} {substeps} x {it}: rest {:.2} peak {:.2} ke1 {:.3} ({:.2}) ke {:.3} ({:.2}) com {:.1} mm us {:.0}", 100.0 * o.rest, 100.0 * o.peak, o.ke1, o.ke1 / r.ke1, o.ke, o.ke / r.ke, 1e3 * o.com, o.us);
+                        println!("{theta} {p} {solver:?} {substeps} x {it}: rest {:.2} peak {:.2} ke1 {:.3} ({:.2}) ke {:.3} ({:.2}) com {:.1} mm us {:.0}", 100.0 * o.rest, 100.0 * o.peak, o.ke1, o.ke1 / r.ke1, o.ke, o.ke / r.ke, 1e3 * o.com, o.us);
                     }
                 }
             }

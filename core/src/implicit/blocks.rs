@@ -17,15 +17,22 @@ pub(super) fn invert_row(l: &Layout, row: usize, mass: &[f32], blocks: &mut [&mu
     for (((((xx, yy), zz), xy), xz), (yz, m)) in
         xx.iter_mut().zip(yy).zip(zz).zip(xy).zip(xz).zip(yz.iter_mut().zip(mass))
     {
-        // scaled by the trace, so that nothing overflows
-        let scale = 1.0 / max(*xx + *yy + *zz, f32::MIN_POSITIVE);
-        let (a, b, c) = (*xx * scale + SHARE, *yy * scale + SHARE, *zz * scale + SHARE);
-        let (d, e, f) = (*xy * scale, *xz * scale, *yz * scale);
-        let (ca, cb, cc) = (b * c - f * f, a * c - e * e, a * b - d * d);
-        let (cd, ce, cf) = (e * f - d * c, d * f - e * b, d * e - a * f);
-        let determinant = a * ca + d * cd + e * ce;
-        let s = if *m > 0.0 { scale / determinant } else { 0.0 };
-        (*xx, *yy, *zz) = (ca * s, cb * s, cc * s);
-        (*xy, *xz, *yz) = (cd * s, ce * s, cf * s);
+        let [a, b, c, d, e, f] = inverse([*xx, *yy, *zz, *xy, *xz, *yz]);
+        let s = if *m > 0.0 { 1.0 } else { 0.0 };
+        (*xx, *yy, *zz) = (a * s, b * s, c * s);
+        (*xy, *xz, *yz) = (d * s, e * s, f * s);
     }
+}
+
+/// The inverse of a block, with [`SHARE`] of its trace on the diagonal; finite for every block.
+#[inline(always)]
+pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: [f32; 6]) -> [f32; 6] {
+    // scaled by the trace, so that nothing overflows
+    let scale = 1.0 / max(xx + yy + zz, f32::MIN_POSITIVE);
+    let (a, b, c) = (xx * scale + SHARE, yy * scale + SHARE, zz * scale + SHARE);
+    let (d, e, f) = (xy * scale, xz * scale, yz * scale);
+    let (ca, cb, cc) = (b * c - f * f, a * c - e * e, a * b - d * d);
+    let (cd, ce, cf) = (e * f - d * c, d * f - e * b, d * e - a * f);
+    let s = scale / (a * ca + d * cd + e * ce);
+    [ca * s, cb * s, cc * s, cd * s, ce * s, cf * s]
 }

@@ -67,13 +67,11 @@ impl System<'_, '_> {
         residual: &mut Planes<'_>,
         search: &mut Planes<'_>,
         image: &mut Planes<'_>,
+        coarse: &mut [f32],
     ) {
         let l = self.l;
         let mut sum = Sum::new();
-        for row in 0..l.rows {
-            self.precondition_row(row, residual.view(), image);
-            sum.add_row(l, row, residual.view(), image.view());
-        }
+        self.precondition(residual.view(), image, coarse, &mut sum);
         let (mut energy, mut share) = (sum.total(), 0.0);
         for _ in 0..iterations {
             let mut sum = Sum::new();
@@ -92,12 +90,30 @@ impl System<'_, '_> {
             for row in 0..l.rows {
                 each(l, row, search.view(), change, |p, v| v + way * p);
                 each(l, row, image.view(), residual, |q, r| r - way * q);
-                self.precondition_row(row, residual.view(), image);
-                sum.add_row(l, row, residual.view(), image.view());
             }
+            self.precondition(residual.view(), image, coarse, &mut sum);
             let next = sum.total();
             share = ratio(next, energy);
             energy = next;
+        }
+    }
+
+    fn precondition(&self, r: View<'_>, z: &mut Planes<'_>, coarse: &mut [f32], sum: &mut Sum) {
+        let l = self.l;
+        for row in 0..l.rows {
+            self.precondition_row(row, r, z);
+        }
+        if LEVELS.load(core::sync::atomic::Ordering::Relaxed) > 0 {
+        super::coarse::add(l, [r.x, r.y, r.z], [&mut *z.x, &mut *z.y, &mut *z.z], coarse);
+        }
+        for row in 0..l.rows {
+            let at = l.row(row);
+            for z in [&mut *z.x, &mut *z.y, &mut *z.z] {
+                for (z, free) in z.get_mut(at..at + l.width).unwrap_or(&mut []).iter_mut().zip(span(self.linear.free, at, l.width)) {
+                    *z *= free;
+                }
+            }
+            sum.add_row(l, row, r, z.view());
         }
     }
 
@@ -131,3 +147,5 @@ fn each(l: &Layout, row: usize, a: View<'_>, b: &mut Planes<'_>, f: impl Fn(f32,
         }
     }
 }
+
+pub static LEVELS: core::sync::atomic::AtomicU32 = core::sync::atomic::AtomicU32::new(1);

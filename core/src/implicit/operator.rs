@@ -18,6 +18,8 @@ const SHORTEST: f32 = 1e-3;
 pub(super) struct Linear<'a> {
     /// M (1 + b c) in kg, 0 for pinned ones and spare places.
     pub mass: &'a mut [f32],
+    /// 1 for free particles, 0 for the others.
+    pub free: &'a mut [f32],
     pub alpha: [&'a mut [f32]; 6],
     pub gamma: [&'a mut [f32]; 6],
 }
@@ -36,7 +38,7 @@ impl<'a> Linear<'a> {
             ])
         };
         let (alpha, gamma) = (six(block)?, six(block)?);
-        Ok(Linear { mass: take(block, n)?, alpha, gamma })
+        Ok(Linear { mass: take(block, n)?, free: take(block, n)?, alpha, gamma })
     }
 
     /// Linearises the springs at the shape `x`. `alpha` becomes the force per vector d in N/m, negative where a spring
@@ -101,9 +103,6 @@ fn spring_row(
         *g = k * (1.0 - max(factor, 0.0)) / l2;
     }
 }
-
-/// A row of three planes.
-type Row<'a> = (&'a [[f32; LANES]], &'a [[f32; LANES]], &'a [[f32; LANES]]);
 
 /// Cuts the rows that the loops below walk along: exactly n / LANES blocks each, or the function ends.
 macro_rules! rows {
@@ -176,7 +175,7 @@ pub(super) fn apply_row<const SHEAR: bool, const BEND: bool>(
     let (px, py, pz) = (around!(l, row, search.x), around!(l, row, search.y), around!(l, row, search.z));
     let alpha = springs!(l, row, linear.alpha.each_ref().map(|p| &**p), SHEAR, BEND);
     let gamma = springs!(l, row, linear.gamma.each_ref().map(|p| &**p), SHEAR, BEND);
-    rows! { l, row; mass = linear.mass, 0; }
+    rows! { l, row; mass = linear.mass, 0; free = linear.free, 0; }
     rows_mut! { l, row; qx = image.x; qy = image.y; qz = image.z; }
     for i in 0..l.width / LANES {
         let load = |r: &[[f32; LANES]]| Lanes(r[i]);
@@ -202,7 +201,8 @@ pub(super) fn apply_row<const SHEAR: bool, const BEND: bool>(
         if BEND {
             spring!(9 10 11 12);
         }
-        (qx[i], qy[i], qz[i]) = (ax.0, ay.0, az.0);
+        let free = load(free);
+        (qx[i], qy[i], qz[i]) = ((free * ax).0, (free * ay).0, (free * az).0);
     }
 }
 
@@ -222,7 +222,7 @@ pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
 ) {
     let (x, y, z) = (around!(l, row, x.x), around!(l, row, x.y), around!(l, row, x.z));
     let alpha = springs!(l, row, linear.alpha.each_ref().map(|p| &**p), SHEAR, BEND);
-    rows! { l, row; mass = linear.mass, 0; }
+    rows! { l, row; mass = linear.mass, 0; free = linear.free, 0; }
     let has_outer = !outer[0].is_empty();
     let [ox, oy, oz] = if has_outer { outer } else { [&*linear.mass; 3] };
     rows! { l, row; ox = ox, 0; oy = oy, 0; oz = oz, 0; }
@@ -252,10 +252,10 @@ pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
         if has_outer {
             (fx, fy, fz) = (fx + load(ox), fy + load(oy), fz + load(oz));
         }
-        let m = load(mass);
-        rx[i] = (b * fx - m * Lanes(rx[i])).0;
-        ry[i] = (b * fy - m * Lanes(ry[i])).0;
-        rz[i] = (b * fz - m * Lanes(rz[i])).0;
+        let (m, free) = (load(mass), load(free));
+        rx[i] = (free * (b * fx) - m * Lanes(rx[i])).0;
+        ry[i] = (free * (b * fy) - m * Lanes(ry[i])).0;
+        rz[i] = (free * (b * fz) - m * Lanes(rz[i])).0;
     }
 }
 
