@@ -38,7 +38,7 @@ mod force;
 mod grid;
 mod hash;
 mod hinge;
-pub mod implicit;
+mod implicit;
 mod inertia;
 mod lanes;
 mod layout;

@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use taut::field::FieldView;
-use taut::{Cloth, ClothDef, Families, Features, Vector3, baked};
+use taut::{Cloth, ClothDef, Families, Features, Solver, Vector3, baked};
 
 struct Counting;
 
@@ -67,14 +67,22 @@ fn the_counter_counts() {
 
 #[test]
 fn nothing_is_allocated() {
-    let grid = common::squares(20, 33, 0.05, Families::ALL);
     let def = ClothDef { features: Features::PULL, inertia_radius_m: 0.3, ..ClothDef::default() };
-    let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
+    allocates_nothing(&def);
+    let features = Features(Features::PULL.0 | Features::IMPLICIT.0);
+    for solver in [Solver::ImplicitEuler, Solver::Bdf2] {
+        allocates_nothing(&ClothDef { solver, features, ..def });
+    }
+}
+
+fn allocates_nothing(def: &ClothDef) {
+    let grid = common::squares(20, 33, 0.05, Families::ALL);
+    let mut block = vec![0.0; Cloth::memory(&grid, def).unwrap()];
     let mut bytes = vec![0; 200_000];
     let field = [500.0; 4 * 7 * 5];
     let mut file = vec![0; baked::size(7, 5).unwrap()];
     let ((), n) = calls(|| {
-        let mut c = Cloth::create(&grid, &def, &mut block).unwrap();
+        let mut c = Cloth::create(&grid, def, &mut block).unwrap();
         let written = baked::write(7, 5, &field, &baked::Fabric::default(), 3, "heavy blue denim", &mut file);
         c.load_stiffness(&file[..written.unwrap()]).unwrap();
         c.set_stiffness_field(&FieldView::new(4, 7, 5, &field).unwrap());

@@ -17,14 +17,15 @@ pub(super) fn invert_row(l: &Layout, row: usize, mass: &[f32], blocks: &mut [&mu
     for (((((xx, yy), zz), xy), xz), (yz, m)) in
         xx.iter_mut().zip(yy).zip(zz).zip(xy).zip(xz).zip(yz.iter_mut().zip(mass))
     {
-        let [a, b, c, d, e, f] = inverse([*xx, *yy, *zz, *xy, *xz, *yz]);
-        let s = if *m > 0.0 { 1.0 } else { 0.0 };
-        (*xx, *yy, *zz) = (a * s, b * s, c * s);
-        (*xy, *xz, *yz) = (d * s, e * s, f * s);
+        let block = inverse([*xx, *yy, *zz, *xy, *xz, *yz]);
+        // chosen, not multiplied: an empty block has no finite inverse
+        let [a, b, c, d, e, f] = block.map(|x| if *m > 0.0 { x } else { 0.0 });
+        (*xx, *yy, *zz) = (a, b, c);
+        (*xy, *xz, *yz) = (d, e, f);
     }
 }
 
-/// The inverse of a block, with [`SHARE`] of its trace on the diagonal; finite for every block.
+/// The inverse of a block, with [`SHARE`] of its trace on the diagonal; finite for every block that is not 0.
 #[inline(always)]
 pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: [f32; 6]) -> [f32; 6] {
     // scaled by the trace, so that nothing overflows

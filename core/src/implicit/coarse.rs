@@ -36,7 +36,8 @@ impl Shape {
     }
 
     fn numbers(self) -> usize {
-        round16((self.rows + 3) * self.stride)
+        // `gather` reads two numbers past the last row
+        round16((self.rows + 3) * self.stride + 2)
     }
 
     fn row(self, row: usize) -> usize {

@@ -26,7 +26,7 @@ pub(super) struct Linear<'a> {
 
 impl<'a> Linear<'a> {
     pub fn new(l: &Layout, n: usize, block: &mut &'a mut [f32]) -> Result<Self, Error> {
-        let mut six = |block: &mut &'a mut [f32]| -> Result<[&'a mut [f32]; 6], Error> {
+        let six = |block: &mut &'a mut [f32]| -> Result<[&'a mut [f32]; 6], Error> {
             let (shear, bend) = (if l.shear { n } else { 0 }, if l.bend { n } else { 0 });
             Ok([
                 take(block, n)?,
@@ -206,8 +206,8 @@ pub(super) fn apply_row<const SHEAR: bool, const BEND: bool>(
     }
 }
 
-/// One row of the right side b F - M (1 + b c) t, where `residual` holds t = v_g - v_bar / (1 + b c) before. `outer` are
-/// the forces beside springs and weight, in N, none where they are empty.
+/// One row of the right side b F - M (1 + b c) (v - known), known = v_bar / (1 + b c), for the shape x; 0 where nothing is
+/// free. `outer` are the forces beside springs and weight, in N, none where they are empty.
 #[inline(never)]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
@@ -216,6 +216,8 @@ pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
     b: f32,
     weight: [f32; 3],
     x: View<'_>,
+    v: View<'_>,
+    known: View<'_>,
     linear: &Linear<'_>,
     outer: [&[f32]; 3],
     residual: &mut Planes<'_>,
@@ -226,6 +228,7 @@ pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
     let has_outer = !outer[0].is_empty();
     let [ox, oy, oz] = if has_outer { outer } else { [&*linear.mass; 3] };
     rows! { l, row; ox = ox, 0; oy = oy, 0; oz = oz, 0; }
+    rows! { l, row; vx = v.x, 0; vy = v.y, 0; vz = v.z, 0; kx = known.x, 0; ky = known.y, 0; kz = known.z, 0; }
     rows_mut! { l, row; rx = residual.x; ry = residual.y; rz = residual.z; }
     let (b, weight) = (Lanes::all(b), weight.map(Lanes::all));
     for i in 0..l.width / LANES {
@@ -253,9 +256,9 @@ pub(super) fn residual_row<const SHEAR: bool, const BEND: bool>(
             (fx, fy, fz) = (fx + load(ox), fy + load(oy), fz + load(oz));
         }
         let (m, free) = (load(mass), load(free));
-        rx[i] = (free * (b * fx) - m * Lanes(rx[i])).0;
-        ry[i] = (free * (b * fy) - m * Lanes(ry[i])).0;
-        rz[i] = (free * (b * fz) - m * Lanes(rz[i])).0;
+        rx[i] = (free * (b * fx) - m * (load(vx) - load(kx))).0;
+        ry[i] = (free * (b * fy) - m * (load(vy) - load(ky))).0;
+        rz[i] = (free * (b * fz) - m * (load(vz) - load(kz))).0;
     }
 }
 
