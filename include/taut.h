@@ -47,10 +47,21 @@
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
-                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) + TAUT_CLOTH_LISTS_(features)))
+                  TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) + TAUT_CLOTH_LISTS_(rows, columns, features)))
 
 // Parts of TAUT_CLOTH_BYTES: one line a feature, planes first, then the lists whose size the grid does not tell.
-#define TAUT_CLOTH_LISTS_(features) (((features) & TAUT_FEATURE_COLLIDERS) ? (size_t)TAUT_MAX_COLLIDERS * 32 : 0)
+#define TAUT_CLOTH_LISTS_(rows, columns, features)                                                           \
+    ((((features) & TAUT_FEATURE_COLLIDERS) ? (size_t)TAUT_MAX_COLLIDERS * 32 : 0) +                         \
+     (((features) & TAUT_FEATURE_IMPLICIT) ? (size_t)16 + TAUT_CLOTH_COARSE_(rows, columns) : 0))
+#define TAUT_CLOTH_COARSE_(m, n)                                                                             \
+    (TAUT_CLOTH_LEVEL_(m, n, 1) + TAUT_CLOTH_LEVEL_(m, n, 2) + TAUT_CLOTH_LEVEL_(m, n, 3) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 4) + TAUT_CLOTH_LEVEL_(m, n, 5) + TAUT_CLOTH_LEVEL_(m, n, 6) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 7) + TAUT_CLOTH_LEVEL_(m, n, 8) + TAUT_CLOTH_LEVEL_(m, n, 9) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 10) + TAUT_CLOTH_LEVEL_(m, n, 11))
+#define TAUT_CLOTH_LEVEL_(m, n, i)                                                                           \
+    (((((size_t)(m) - 2) >> ((i) - 1)) >= 2 && (((size_t)(n) - 2) >> ((i) - 1)) >= 2)                        \
+         ? 13 * TAUT_ROUND_16_(((((size_t)(m) - 2) >> (i)) + 5) * ((((size_t)(n) - 2) >> (i)) + 5) + 2)      \
+         : 0)
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
 #define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
 #define TAUT_CLOTH_PLANES_(families, features)                                                               \
@@ -59,7 +70,11 @@
      (((features) & (TAUT_FEATURE_AIR | TAUT_FEATURE_HINGE | TAUT_FEATURE_MASS)) ? 3 : 0) +                  \
      (((features) & TAUT_FEATURE_MASS) ? 1 : 0) + (((features) & TAUT_FEATURE_MASK) ? 1 : 0) +               \
      (((features) & TAUT_FEATURE_TETHERS) ? 4 : 0) + (((features) & TAUT_FEATURE_LEVELS) ? 3 : 0) +          \
-     (((features) & TAUT_FEATURE_TARGETS) ? 12 : 0) + (((features) & TAUT_FEATURE_IMPLICIT) ? 18 : 0))
+     (((features) & TAUT_FEATURE_TARGETS) ? 12 : 0) + TAUT_CLOTH_IMPLICIT_(families, features))
+#define TAUT_CLOTH_IMPLICIT_(families, features)                                                             \
+    (((features) & TAUT_FEATURE_IMPLICIT)                                                                    \
+         ? 33 + (((families) & TAUT_FAMILY_SHEAR) ? 4 : 0) + (((families) & TAUT_FAMILY_BEND) ? 4 : 0)       \
+         : 0)
 
 
 // Version of this header and library, as in 1.2.3.
@@ -314,7 +329,8 @@ typedef struct {
     float density_kg_m2;
     // Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
     float damping_per_s;
-    // Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
+    // Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25. The
+    // implicit solvers need none and do not know it.
     float speed_limit;
     // 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
     // exploding; 0: off. Default 1.
@@ -332,7 +348,8 @@ typedef struct {
     uint32_t max_pins;
     // A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
     uint32_t solver;
-    // Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    // Iterations of the conjugate gradients of an implicit solver in each of the two linearisations of a substep, 1 to 1,000.
+    // Default 10.
     uint32_t cg_iterations;
     // How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     // 5 %). Default 0.
