@@ -86,7 +86,8 @@ impl System<'_, '_> {
             // the directions are two rows ahead of the operator, which reads them
             for row in 0..l.rows + 2 {
                 if row < l.rows {
-                    each(l, row, image.view(), search, |z, p| z + share * p);
+                    // the directions of an earlier solve are not multiplied by 0: they may be no numbers
+                    each(l, row, image.view(), search, |z, p| if share > 0.0 { z + share * p } else { z });
                 }
                 if row >= 2 {
                     apply_row::<SHEAR, BEND>(l, row - 2, self.x, self.linear, search.view(), image);

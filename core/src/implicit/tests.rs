@@ -336,3 +336,37 @@ fn the_operator_is_the_derivative_of_the_force() {
         assert!((error / size).sqrt() < 2e-3, "{rows} x {columns}: {:.1e}", (error / size).sqrt());
     }
 }
+
+/// A frame that would end without finite numbers is taken back; BDF2 then forgets its past (it belonged to that frame) and
+/// goes on with a step of implicit Euler.
+#[test]
+fn a_frame_that_is_taken_back_leaves_no_past() {
+    let made = |solver| {
+        let grid = Grid::new(&GridDef { rows: 5, columns: 4, ..GridDef::default() }).unwrap();
+        let features = Features(Features::IMPLICIT.0 | Features::PULL.0);
+        let def = ClothDef { solver, substeps: 1, features, ..ClothDef::default() };
+        let mut c = Cloth::create(&grid, &def, vec![0.0; Cloth::memory(&grid, &def).unwrap()].leak()).unwrap();
+        c.set_stiffness_uniform([900.0, 400.0, 60.0, 1.0]).unwrap();
+        c.pin(0).unwrap();
+        c
+    };
+    let mut c = made(Solver::Bdf2);
+    for _ in 0..5 {
+        c.step().unwrap();
+    }
+    let mut euler = made(Solver::ImplicitEuler);
+    for i in 0..20 {
+        euler.set_position(i, c.position(i).unwrap()).unwrap();
+        euler.set_velocity(i, c.velocity(i).unwrap()).unwrap();
+    }
+    let state = |c: &Cloth<'_>| (list(c, &c.x), list(c, &c.v));
+    let before = state(&c);
+    // no call lets such a force in
+    c.pull[1][c.layout.place(7).unwrap()] = f32::NAN;
+    c.has_pull = true;
+    assert_eq!(c.step().unwrap(), crate::StepFlags::NON_FINITE);
+    assert_eq!(state(&c), before);
+    assert_eq!(c.step().unwrap(), crate::StepFlags(0));
+    euler.step().unwrap();
+    assert_eq!(state(&c), state(&euler));
+}
