@@ -359,7 +359,8 @@ typedef struct {
     float density_kg_m2;
     // Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
     float damping_per_s;
-    // Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
+    // Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25. The
+    // implicit solvers need none and do not know it.
     float speed_limit;
     // 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
     // exploding; 0: off. Default 1.
@@ -377,7 +378,8 @@ typedef struct {
     uint32_t max_pins;
     // A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
     uint32_t solver;
-    // Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    // Iterations of the conjugate gradients of an implicit solver in each of the two linearisations of a substep, 1 to 1,000.
+    // Default 10.
     uint32_t cg_iterations;
     // How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     // 5 %). Default 0.

@@ -114,7 +114,7 @@ impl Air {
         [x, y, z, self.density_kg_m3, self.drag, self.lift, self.gust, self.gust_hz, low as f32, high as f32]
     }
 
-    fn from_numbers(at: impl Fn(usize) -> f32) -> Air {
+    pub(crate) fn from_numbers(at: impl Fn(usize) -> f32) -> Air {
         Air {
             wind_m_s: [at(0), at(1), at(2)],
             density_kg_m3: at(3),

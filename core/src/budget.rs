@@ -16,7 +16,7 @@ use crate::layout::{Layout, read, write};
 use crate::mask::cuts;
 use crate::masses::Body;
 use crate::math::{max, min, sqrt};
-use crate::{Budget, ClothDef, Grid};
+use crate::{Budget, ClothDef, Grid, Solver};
 
 /// The bend channel is cut to at most this share of the mean structural stiffness of the particle: Provot's bend springs
 /// also resist stretch, and a fit that may use them for that hangs the load on them.
@@ -63,6 +63,8 @@ pub(crate) fn project(
     let (def, l) = (body.def, body.layout);
     average(body, target, springs);
     let dt = def.dt_s();
+    // an implicit solver is stable with the stiffness as it is
+    let explicit = def.solver == Solver::SymplecticEuler;
     let allowed = 4.0 / (dt * dt) - 2.0 * def.damping_per_s / dt;
     let share = match def.budget {
         Budget::Certified => CERTIFIED_SHARE,
@@ -86,7 +88,7 @@ pub(crate) fn project(
             let hinge2 = hinges * w;
             worst = max(worst, max(omega2 + hinge2, hinge2 / HINGE_SHARE));
             let s = (share * allowed - kept * w) / max(omega2, f32::MIN_POSITIVE);
-            write(scale, at, min(s, 1.0));
+            write(scale, at, if explicit { min(s, 1.0) } else { 1.0 });
         }
     }
     let (mut before, mut after) = (0.0f64, 0.0f64);
@@ -112,7 +114,7 @@ pub(crate) fn project(
     // omega^2 dt^2 + 2 c dt share = 4 share, solved for dt without cancellation
     let w = f64::from(worst) / f64::from(share);
     let c = f64::from(def.damping_per_s);
-    let max_dt = if w > 0.0 { (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32 } else { f32::INFINITY };
+    let max_dt = if explicit && w > 0.0 { (4.0 / (c + libm::sqrt(c * c + 4.0 * w))) as f32 } else { f32::INFINITY };
     BudgetReport {
         dt_s: dt,
         max_dt_s: max_dt,

@@ -187,7 +187,7 @@ impl<'a> Cloth<'a> {
         self.ambient = Ambient::new(&self.def);
         self.colliders.numbers.fill(0.0);
         self.reset_targets();
-        self.implicit.planes.fill(0.0);
+        self.implicit.reset();
         self.pose = Pose::new(&self.def);
         self.step_index = 0;
         self.stale = true;

@@ -75,7 +75,8 @@ pub struct ClothDef {
     pub gravity_m_s2: [f32; 3],
     /// Damping c in 1/s: F_damping = -c M v. At least 0, and c dt below 1. Default 2.
     pub damping_per_s: f32,
-    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
+    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25. The
+    /// implicit solvers need none and do not know it.
     pub speed_limit: f32,
     /// Whether a compressed spring may push with at most k times its length, which keeps crumpled cloth from exploding:
     /// the factor 1 - L0/l of eq. 1 is kept at -1 or above. Default true.
@@ -92,7 +93,8 @@ pub struct ClothDef {
     pub max_pins: u32,
     /// The solver; the implicit ones need [`Features::IMPLICIT`]. Default `SymplecticEuler`.
     pub solver: Solver,
-    /// Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    /// Iterations of the conjugate gradients of an implicit solver in each of the two linearisations of a substep, 1 to 1,000.
+    /// Default 10.
     pub cg_iterations: u32,
     /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     /// 5 %). Default 0.

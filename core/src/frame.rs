@@ -241,6 +241,8 @@ impl Cloth<'_> {
             let to = if in_world { motion.keep(to) } else { motion.carry(to) };
             self.pins.set(i, Pin { particle, from: motion.carry(from), to });
         }
+        // the step before was in another frame
+        self.implicit.reset();
         self.carry_colliders(motion, in_world);
         self.carry_targets(motion, in_world);
     }

@@ -44,13 +44,13 @@ impl Cloth<'_> {
         let substeps = self.def.substeps;
         for s in 1..=substeps {
             let share = s as f32 / substeps as f32;
-            if self.layout.force() {
-                self.outer_forces(s - 1);
-            }
-            if self.def.solver != Solver::SymplecticEuler {
-                self.implicit_substep(&c);
-            } else {
+            if self.def.solver == Solver::SymplecticEuler {
+                if self.layout.force() {
+                    self.outer_forces(s - 1);
+                }
                 self.substep(&c);
+            } else {
+                self.implicit_substep(&c, s - 1, share);
             }
             self.place_pins(share);
             self.constrain(&c, share);
@@ -61,6 +61,7 @@ impl Cloth<'_> {
             self.step_index += 1;
         } else {
             self.back_to_good();
+            self.implicit.reset();
             for i in 0..self.pins.count {
                 let pin = self.pins.get(i);
                 self.pins.set(i, crate::pins::Pin { to: pin.from, ..pin });

@@ -7,7 +7,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use taut::field::FieldView;
-use taut::{Cloth, ClothDef, ColliderDef, Families, Features, Frame, Pose, Shape, Target, TargetLimit, Vector3, baked};
+use taut::{
+    Cloth, ClothDef, ColliderDef, Families, Features, Frame, Pose, Shape, Solver, Target, TargetLimit, Vector3, baked,
+};
 
 struct Counting;
 
@@ -67,19 +69,21 @@ fn the_counter_counts() {
 
 #[test]
 fn nothing_is_allocated() {
+    let def = ClothDef { features: Features::ALL, inertia_radius_m: 0.3, sleep_speed_m_s: 1e-3, ..ClothDef::default() };
+    allocates_nothing(&def);
+    for solver in [Solver::ImplicitEuler, Solver::Bdf2] {
+        allocates_nothing(&ClothDef { solver, ..def });
+    }
+}
+
+fn allocates_nothing(def: &ClothDef) {
     let grid = common::squares(20, 33, 0.05, Families::ALL);
-    let def = ClothDef {
-        features: Features(Features::ALL.0 & !Features::IMPLICIT.0),
-        inertia_radius_m: 0.3,
-        sleep_speed_m_s: 1e-3,
-        ..ClothDef::default()
-    };
-    let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
-    let mut bytes = vec![0; 400_000];
+    let mut block = vec![0.0; Cloth::memory(&grid, def).unwrap()];
+    let mut bytes = vec![0; 800_000];
     let field = [500.0; 4 * 7 * 5];
     let mut file = vec![0; baked::size(7, 5).unwrap()];
     let ((), n) = calls(|| {
-        let mut c = Cloth::create(&grid, &def, &mut block).unwrap();
+        let mut c = Cloth::create(&grid, def, &mut block).unwrap();
         let written = baked::write(7, 5, &field, &baked::Fabric::default(), 3, "heavy blue denim", &mut file);
         c.load_stiffness(&file[..written.unwrap()]).unwrap();
         c.set_stiffness_field(&FieldView::new(4, 7, 5, &field).unwrap());

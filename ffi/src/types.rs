@@ -140,7 +140,8 @@ pub struct ClothDef {
     pub density_kg_m2: f32,
     /// Damping c in 1/s: the force -c M v on each particle. At least 0, and c dt below 1. Default 2.
     pub damping_per_s: f32,
-    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25.
+    /// Speed limit as a fraction of the smallest rest length per substep, 1e-6 to 1e6; 0 = none. Default 0.25. The
+    /// implicit solvers need none and do not know it.
     pub speed_limit: f32,
     /// 1: a compressed spring pushes with at most its stiffness times its length, which keeps crumpled cloth from
     /// exploding; 0: off. Default 1.
@@ -158,7 +159,8 @@ pub struct ClothDef {
     pub max_pins: u32,
     /// A taut_solver; the implicit ones need TAUT_FEATURE_IMPLICIT. Default TAUT_SOLVER_SYMPLECTIC_EULER.
     pub solver: u32,
-    /// Iterations of the conjugate gradients of an implicit solver in each substep, 1 to 1,000. Default 10.
+    /// Iterations of the conjugate gradients of an implicit solver in each of the two linearisations of a substep, 1 to 1,000.
+    /// Default 10.
     pub cg_iterations: u32,
     /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     /// 5 %). Default 0.

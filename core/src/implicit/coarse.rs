@@ -1,0 +1,196 @@
+//! The coarse half of the preconditioner: sums over ever coarser grids (Bramble, Pasciak and Xu 1990).
+//!
+//! A residual travels one particle per iteration of plain conjugate gradients, so a sheet of N x N would need a multiple of
+//! N of them. Here it is also gathered on the particles of every second row and column with the weights of bilinear
+//! interpolation, on those of every fourth, and so on down to 3, divided there by the diagonal blocks of the operator for
+//! these shapes, and spread again. The preconditioner stays a sum of squares: symmetric and positive definite.
+//!
+//! The blocks of a grid of spacing H (in cells) follow from those of the fine one: a hat of bilinear interpolation weighs
+//! the mass by 4/9 of its plain sum, the springs by 2/3 / H^2. A node on a pinned particle is left out.
+
+use super::blocks::inverse;
+use crate::layout::{Layout, read, write};
+use crate::math::round16;
+
+/// One plane: numbers, place of (row 0, column 0), numbers from a row to the next.
+#[derive(Clone, Copy)]
+struct Shape {
+    rows: usize,
+    columns: usize,
+    first: usize,
+    stride: usize,
+}
+
+impl Shape {
+    fn fine(l: &Layout) -> Shape {
+        Shape { rows: l.rows, columns: l.columns, first: l.row(0), stride: l.stride }
+    }
+
+    /// The next coarser one: every second row and column; where the last is not met there is one beyond it. None below 4.
+    /// One row and column before it and two after it are spare.
+    fn coarser(self) -> Option<Shape> {
+        let half = |n: usize| n / 2 + 1;
+        let stride = half(self.columns) + 3;
+        let next = Shape { rows: half(self.rows), columns: half(self.columns), first: stride + 1, stride };
+        (self.rows >= 4 && self.columns >= 4).then_some(next)
+    }
+
+    fn numbers(self) -> usize {
+        // `gather` reads two numbers past the last row
+        round16((self.rows + 3) * self.stride + 2)
+    }
+
+    fn row(self, row: usize) -> usize {
+        self.first + row * self.stride
+    }
+}
+
+/// Planes of a level: mass, blocks, residual, result.
+const PLANES: usize = 13;
+
+/// Numbers of all levels.
+pub(super) fn numbers(l: &Layout) -> usize {
+    let (mut sum, mut shape) = (0, Shape::fine(l));
+    while let Some(next) = shape.coarser() {
+        sum += PLANES * next.numbers();
+        shape = next;
+    }
+    sum
+}
+
+/// A level: its planes cut from the memory.
+struct Level<'a> {
+    shape: Shape,
+    mass: &'a mut [f32],
+    blocks: [&'a mut [f32]; 6],
+    residual: [&'a mut [f32]; 3],
+    result: [&'a mut [f32]; 3],
+}
+
+/// Cuts the coarsest-first part off: this level and what is left for the coarser ones.
+fn level(fine: Shape, memory: &mut [f32]) -> Option<(Level<'_>, &mut [f32])> {
+    let shape = fine.coarser()?;
+    let n = shape.numbers();
+    let (mine, rest) = memory.split_at_mut_checked(PLANES * n)?;
+    let mut planes = mine.chunks_exact_mut(n.max(1));
+    let mut next = || planes.next().unwrap_or(&mut []);
+    let mass = next();
+    let blocks = core::array::from_fn(|_| next());
+    let residual = core::array::from_fn(|_| next());
+    let result = core::array::from_fn(|_| next());
+    Some((Level { shape, mass, blocks, residual, result }, rest))
+}
+
+/// to = sum over the fine nodes with the weights 1, 1/2, 1/4 of the hat around each coarse one.
+fn gather(fine: Shape, from: &[f32], coarse: Shape, to: &mut [f32]) {
+    for row in 0..coarse.rows {
+        let n = 2 * coarse.columns + 2;
+        let middle = fine.row(2 * row) - 1;
+        let pairs = |at: usize| from.get(at..at + n).unwrap_or(&[]).as_chunks::<2>().0;
+        let (above, here, below) = (pairs(middle - fine.stride), pairs(middle), pairs(middle + fine.stride));
+        let (above2, here2, below2) =
+            (above.get(1..).unwrap_or(&[]), here.get(1..).unwrap_or(&[]), below.get(1..).unwrap_or(&[]));
+        let at = coarse.row(row);
+        let to = to.get_mut(at..at + coarse.columns).unwrap_or(&mut []);
+        let left = above.iter().zip(here).zip(below);
+        let right = above2.iter().zip(here2).zip(below2);
+        for ((to, ((a, h), b)), ((a2, h2), b2)) in to.iter_mut().zip(left).zip(right) {
+            let t = |a: f32, h: f32, b: f32| h + 0.5 * (a + b);
+            *to = t(a[1], h[1], b[1]) + 0.5 * (t(a[0], h[0], b[0]) + t(a2[0], h2[0], b2[0]));
+        }
+    }
+}
+
+/// to += the bilinear interpolation of the coarse nodes.
+fn spread(coarse: Shape, from: &[f32], fine: Shape, to: &mut [f32]) {
+    for row in 0..fine.rows {
+        let at = coarse.row(row / 2);
+        let below = coarse.row(row.div_ceil(2));
+        let n = coarse.columns;
+        let cut = |at: usize| from.get(at..at + n + 1).unwrap_or(&[]);
+        let (a, b) = (cut(at), cut(below));
+        let (a2, b2) = (a.get(1..).unwrap_or(&[]), b.get(1..).unwrap_or(&[]));
+        let at = fine.row(row);
+        let pairs = to.get_mut(at..at + 2 * n).unwrap_or(&mut []).as_chunks_mut::<2>().0;
+        for (((to, (a, b)), a2), b2) in pairs.iter_mut().zip(a.iter().zip(b)).zip(a2).zip(b2) {
+            let (t, t2) = (0.5 * (a + b), 0.5 * (a2 + b2));
+            to[0] += t;
+            to[1] += 0.5 * (t + t2);
+        }
+    }
+}
+
+/// Computes the inverse blocks of all levels from the mass and the blocks of the fine grid, which are not inverted yet.
+pub(super) fn prepare(l: &Layout, mass: &[f32], blocks: [&[f32]; 6], memory: &mut [f32]) {
+    prepare_level(Shape::fine(l), mass, blocks, 4.0, memory);
+}
+
+fn prepare_level(fine: Shape, mass: &[f32], blocks: [&[f32]; 6], h2: f32, memory: &mut [f32]) {
+    let Some((level, rest)) = level(fine, memory) else {
+        return;
+    };
+    let Level { shape, mass: sum, blocks: mut sums, .. } = level;
+    gather(fine, mass, shape, sum);
+    for (to, from) in sums.iter_mut().zip(blocks) {
+        gather(fine, from, shape, to);
+    }
+    for row in 0..shape.rows {
+        for column in 0..shape.columns {
+            let inside = 2 * row < fine.rows && 2 * column < fine.columns;
+            if inside && read(mass, fine.row(2 * row) + 2 * column) == 0.0 {
+                write(sum, shape.row(row) + column, 0.0);
+            }
+        }
+    }
+    prepare_level(shape, sum, sums.each_ref().map(|p| &**p), 4.0 * h2, rest);
+    let springs = 2.0 / 3.0 / h2;
+    let inertia = 4.0 / 9.0 - springs;
+    for row in 0..shape.rows {
+        for column in 0..shape.columns {
+            let at = shape.row(row) + column;
+            let m = read(sum, at);
+            let mut block = sums.each_ref().map(|p| springs * read(p, at));
+            for d in block.iter_mut().take(3) {
+                *d += inertia * m;
+            }
+            let done = if m > 0.0 { inverse(block) } else { [0.0; 6] };
+            for (plane, x) in sums.iter_mut().zip(done) {
+                write(plane, at, x);
+            }
+        }
+    }
+}
+
+/// Adds the coarse parts to the preconditioned residual `z`; `r` must be 0 where nothing moves.
+pub(super) fn add(l: &Layout, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
+    add_level(Shape::fine(l), r, z, memory);
+}
+
+fn add_level(fine: Shape, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
+    let Some((level, rest)) = level(fine, memory) else {
+        return;
+    };
+    let Level { shape, blocks, mut residual, mut result, .. } = level;
+    for (to, from) in residual.iter_mut().zip(r) {
+        gather(fine, from, shape, to);
+    }
+    {
+        let [rx, ry, rz] = residual.each_ref().map(|p| p.iter());
+        let [xx, yy, zz, xy, xz, yz] = blocks.each_ref().map(|p| p.iter());
+        let [zx, zy, z_z] = result.each_mut().map(|p| p.iter_mut());
+        let outs = zx.zip(zy).zip(z_z);
+        let r = rx.zip(ry).zip(rz);
+        for (((((x, y), z), ((a, b), c)), ((d, e), f)), ((rx, ry), rz)) in
+            outs.zip(xx.zip(yy).zip(zz)).zip(xy.zip(xz).zip(yz)).zip(r)
+        {
+            *x = a * rx + d * ry + e * rz;
+            *y = d * rx + b * ry + f * rz;
+            *z = e * rx + f * ry + c * rz;
+        }
+    }
+    let residual = residual.each_ref().map(|p| &**p);
+    add_level(shape, residual, result.each_mut().map(|p| &mut **p), rest);
+    for (to, from) in z.into_iter().zip(&result) {
+        spread(shape, from, fine, to);
+    }
+}
