@@ -64,7 +64,7 @@
 #define TAUT_CLOTH_BYTES(rows, columns, families, features, max_pins)                                        \
     ((size_t)TAUT_CLOTH_HEADER_BYTES +                                                                       \
      (size_t)4 * (TAUT_CLOTH_PLANES_(families, features) * TAUT_CLOTH_PLANE_(rows, columns) +                \
-                  TAUT_CLOTH_LISTS_(max_pins)))
+                  18 * TAUT_CLOTH_STRIDE_(columns) + TAUT_CLOTH_LISTS_(rows, columns, features, max_pins)))
 
 // Parts of TAUT_CLOTH_BYTES. A plane is one number per particle with its borders. This is the table of what takes memory:
 // first the planes of every cloth, then a line for each family and each feature; and the lists with a capacity.
@@ -72,9 +72,32 @@
     ((size_t)17 +                                                                                            \
      TAUT_IF_(families, TAUT_FAMILY_SHEAR, 3) +                                                              \
      TAUT_IF_(families, TAUT_FAMILY_BEND, 3) +                                                               \
-     TAUT_IF_(features, TAUT_FEATURE_PULL, 3))
-#define TAUT_CLOTH_LISTS_(max_pins) TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins))
-#define TAUT_CLOTH_PLANE_(rows, columns) ((TAUT_ROUND_16_(columns) + 16) * ((size_t)(rows) + 4) + 32)
+     TAUT_IF_(features, TAUT_FEATURE_PULL, 3) +                                                              \
+     TAUT_IF_(features, TAUT_FEATURE_AIR | TAUT_FEATURE_HINGE | TAUT_FEATURE_MASS, 3) +                      \
+     TAUT_IF_(features, TAUT_FEATURE_MASS, 1) +                                                              \
+     TAUT_IF_(features, TAUT_FEATURE_MASK, 1) +                                                              \
+     TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS, 4) +                                     \
+     TAUT_IF_(features, TAUT_FEATURE_STRAIN_LIMIT | TAUT_FEATURE_LEVELS, 3) +                                \
+     TAUT_IF_(features, TAUT_FEATURE_LEVELS, 4) +                                                            \
+     TAUT_IF_(features, TAUT_FEATURE_TARGETS, 15) +                                                          \
+     TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, TAUT_CLOTH_IMPLICIT_(families)))
+#define TAUT_CLOTH_IMPLICIT_(families)                                                                       \
+    (33 + TAUT_IF_(families, TAUT_FAMILY_SHEAR, 4) + TAUT_IF_(families, TAUT_FAMILY_BEND, 4))
+#define TAUT_CLOTH_LISTS_(rows, columns, features, max_pins)                                                                \
+    (TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) +                                                        \
+     TAUT_IF_(features, TAUT_FEATURE_COLLIDERS, TAUT_MAX_COLLIDERS * 32) +                                   \
+     TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, 16 + TAUT_CLOTH_COARSE_(rows, columns)))
+#define TAUT_CLOTH_COARSE_(m, n)                                                                             \
+    (TAUT_CLOTH_LEVEL_(m, n, 1) + TAUT_CLOTH_LEVEL_(m, n, 2) + TAUT_CLOTH_LEVEL_(m, n, 3) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 4) + TAUT_CLOTH_LEVEL_(m, n, 5) + TAUT_CLOTH_LEVEL_(m, n, 6) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 7) + TAUT_CLOTH_LEVEL_(m, n, 8) + TAUT_CLOTH_LEVEL_(m, n, 9) +                  \
+     TAUT_CLOTH_LEVEL_(m, n, 10) + TAUT_CLOTH_LEVEL_(m, n, 11))
+#define TAUT_CLOTH_LEVEL_(m, n, i)                                                                           \
+    (((((size_t)(m) - 2) >> ((i) - 1)) >= 2 && (((size_t)(n) - 2) >> ((i) - 1)) >= 2)                        \
+         ? 13 * TAUT_ROUND_16_(((((size_t)(m) - 2) >> (i)) + 5) * ((((size_t)(n) - 2) >> (i)) + 5) + 2)      \
+         : 0)
+#define TAUT_CLOTH_STRIDE_(columns) (TAUT_ROUND_16_(columns) + 16)
+#define TAUT_CLOTH_PLANE_(rows, columns) (TAUT_CLOTH_STRIDE_(columns) * ((size_t)(rows) + 4) + 32)
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
 #define TAUT_IF_(bits, bit, numbers) (((bits) & (bit)) ? (size_t)(numbers) : (size_t)0)
 
@@ -218,6 +241,12 @@ enum taut_result
     TAUT_ERROR_VERSION_MISMATCH = -23,
     // This machine lacks the vector width.
     TAUT_ERROR_UNSUPPORTED_WIDTH = -24,
+    // The particle is absent: the mask says so.
+    TAUT_ERROR_ABSENT = -25,
+    // There is no collider of this id (any more).
+    TAUT_ERROR_NO_SUCH_COLLIDER = -26,
+    // There are TAUT_MAX_COLLIDERS colliders already.
+    TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -447,6 +476,62 @@ typedef struct {
     float hinge_fraction;
 } taut_budget_report;
 
+// Where a collider is.
+typedef struct {
+    // Position in the world in m, at most 1e6 from the cloth's origin along each axis.
+    double position_m[3];
+    // Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
+    float rotation[4];
+} taut_pose;
+
+// What a collider is made of. Comes from taut_collider_def_default(), then change what you need. Lengths are in m, in the
+// collider's own frame; fields that the shape does not use are not looked at.
+typedef struct {
+    // Bytes of this structure. Set by taut_collider_def_default().
+    uint32_t size;
+    // Shows that the definition came from taut_collider_def_default().
+    uint32_t cookie;
+    // Where it is. Default 0, 0, 0, not turned.
+    taut_pose pose;
+    // A taut_shape.
+    uint32_t shape;
+    // Coefficient of Coulomb friction, 0 to 100. Default 0.3.
+    float friction;
+    // Distance from the shape that the particles keep, in m, 0 to 1e3. Default 0.005.
+    float thickness_m;
+    // Radius of the sphere, or of the capsule at its two ends, 1e-6 to 1e4. Default 0.1, 0.1.
+    float radius_m[2];
+    // Ends of the capsule, at most 1e4 along each axis. Default (0, -0.1, 0) and (0, 0.1, 0).
+    float ends_m[2][3];
+    // Direction out of the half space, 1e-3 to 1e3 long. Default (0, 1, 0).
+    float normal[3];
+    // Half the side lengths of the box, 1e-6 to 1e4. Default (0.1, 0.1, 0.1).
+    float half_m[3];
+    // 0.
+    uint32_t reserved;
+} taut_collider_def;
+
+// The air around a cloth: drag and lift by the velocity of its cells relative to the wind. Comes from taut_air_default(),
+// then change what you need.
+typedef struct {
+    // Velocity of the wind in m/s, at most 1e3 in size. Default 0, 0, 0.
+    float wind_m_s[3];
+    // Density in kg/m^3, 0 to 1e4; 0 = no air. Default 1.2.
+    float density_kg_m3;
+    // Drag coefficient, 0 to 100: the drag of an area A at right angles to the flow is 0.5 density drag A speed^2. Default
+    // 1.2, that of a square plate.
+    float drag;
+    // Lift coefficient, 0 to 100: the lift of an area A at the angle of attack a is 0.5 density lift A speed^2 sin(a) cos(a).
+    // Default 1.2.
+    float lift;
+    // Gusts as a share of the wind's speed, 0 to 1: each component of the wind varies smoothly by up to so much. Default 0.
+    float gust;
+    // How often a gust turns per second, 0 to 1e3. Default 1.
+    float gust_hz;
+    // Which gusts: they are a function of the seed and the step index alone. Default 0.
+    uint32_t seed;
+} taut_air;
+
 // Where a cloth's frame is in the world.
 typedef struct {
     // Position in m, each at most 1e12 in size: the origin of the local frame.
@@ -630,6 +715,7 @@ taut_result taut_cloth_set_stiffness_field(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_GRID_SIZE, TAUT_ERROR_SHAPE
 // (channels). Then the former stiffness stays.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_stiffness_field_sanitised(taut_cloth *cloth,
                                                      uint32_t channels,
                                                      uint32_t rows,
@@ -666,6 +752,7 @@ TAUT_API taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *ou
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
 // (count is not the number of particles).
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_mask(taut_cloth *cloth,
                                 uint32_t count,
                                 const uint8_t *present);
@@ -678,6 +765,7 @@ taut_result taut_cloth_set_mask(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
 // (count is not the number of particles), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_masses(taut_cloth *cloth,
                                   uint32_t count,
                                   const float *mass_kg);
@@ -688,6 +776,7 @@ taut_result taut_cloth_set_masses(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
 // TAUT_ERROR_OUT_OF_RANGE.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_gravity(taut_cloth *cloth,
                                    const float gravity_m_s2[3]);
 
@@ -696,7 +785,7 @@ taut_result taut_cloth_set_gravity(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
 // TAUT_ERROR_NEGATIVE, TAUT_ERROR_DAMPING.
 // Threads: changes the cloth.
-taut_result taut_cloth_set_damping(taut_cloth *cloth, float damping_per_s);
+TAUT_API taut_result taut_cloth_set_damping(taut_cloth *cloth, float damping_per_s);
 
 // Factors of the rest lengths from the next step on, 0.5 to 2: of the warp (structural and bend springs along v), the weft
 // (those along u), and the diagonals. Below 1 the cloth shrinks, or is pre-stretched where pins hold it; above 1 it has slack.
@@ -706,6 +795,7 @@ taut_result taut_cloth_set_damping(taut_cloth *cloth, float damping_per_s);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
 // TAUT_ERROR_OUT_OF_RANGE.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_rest_scale(taut_cloth *cloth,
                                       float warp,
                                       float weft,
@@ -745,7 +835,7 @@ TAUT_API taut_result taut_cloth_pin_count(const taut_cloth *cloth, uint32_t *out
 // A definition of a collider with its defaults; shape is a taut_shape.
 //
 // Threads: any.
-taut_collider_def taut_collider_def_default(uint32_t shape);
+TAUT_API taut_collider_def taut_collider_def_default(uint32_t shape);
 
 // Adds a collider, of which a cloth has up to TAUT_MAX_COLLIDERS. Needs TAUT_FEATURE_COLLIDERS. out_id is its id: a value,
 // never 0, that is not given again after the collider was removed. Ids are part of the state: after taut_cloth_restore
@@ -756,6 +846,7 @@ taut_collider_def taut_collider_def_default(uint32_t shape);
 // TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE (also a shape that is none, a
 // size of 0), TAUT_ERROR_TOO_MANY_COLLIDERS.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_collider_add(taut_cloth *cloth,
                                     const taut_collider_def *def,
                                     uint32_t *out_id);
@@ -767,6 +858,7 @@ taut_result taut_cloth_collider_add(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER,
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's origin, a rotation of length 0).
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_collider_move(taut_cloth *cloth,
                                      uint32_t id,
                                      const taut_pose *pose);
@@ -776,6 +868,7 @@ taut_result taut_cloth_collider_move(taut_cloth *cloth,
 //
 // Errors: those of taut_cloth_collider_move.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_collider_set_pose(taut_cloth *cloth,
                                          uint32_t id,
                                          const taut_pose *pose);
@@ -784,19 +877,19 @@ taut_result taut_cloth_collider_set_pose(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER.
 // Threads: changes the cloth.
-taut_result taut_cloth_collider_remove(taut_cloth *cloth, uint32_t id);
+TAUT_API taut_result taut_cloth_collider_remove(taut_cloth *cloth, uint32_t id);
 
 // Where a collider is now, before the next frame.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_COLLIDER.
 // Threads: reads the cloth.
-taut_result taut_cloth_collider_pose(const taut_cloth *cloth, uint32_t id, taut_pose *out);
+TAUT_API taut_result taut_cloth_collider_pose(const taut_cloth *cloth, uint32_t id, taut_pose *out);
 
 // Number of colliders.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-taut_result taut_cloth_collider_count(const taut_cloth *cloth, uint32_t *out);
+TAUT_API taut_result taut_cloth_collider_count(const taut_cloth *cloth, uint32_t *out);
 
 // Sets how far each of the count particles may be from its target; count is the number of particles of the grid. Needs
 // TAUT_FEATURE_TARGETS. max_distance_m is the largest distance in m, 0 to 1e6 or infinity (free, as before the first call);
@@ -807,6 +900,7 @@ taut_result taut_cloth_collider_count(const taut_cloth *cloth, uint32_t *out);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF, TAUT_ERROR_SHAPE
 // (count), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_target_limits(taut_cloth *cloth,
                                          uint32_t count,
                                          const float *max_distance_m,
@@ -825,6 +919,7 @@ taut_result taut_cloth_set_target_limits(taut_cloth *cloth,
 // TAUT_ERROR_SHAPE (count, stride), TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (more than 1e6 m from the cloth's
 // origin, a normal of another length).
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_move_targets(taut_cloth *cloth,
                                     const double base_m[3],
                                     uint32_t count,
@@ -837,6 +932,7 @@ taut_result taut_cloth_move_targets(taut_cloth *cloth,
 //
 // Errors: those of taut_cloth_move_targets.
 // Threads: changes the cloth.
+TAUT_API
 taut_result taut_cloth_set_targets(taut_cloth *cloth,
                                    const double base_m[3],
                                    uint32_t count,
@@ -876,12 +972,15 @@ TAUT_API taut_result taut_cloth_set_velocity(taut_cloth *cloth, uint32_t particl
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
 // TAUT_ERROR_NO_SUCH_PARTICLE, TAUT_ERROR_ABSENT, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_OUT_OF_RANGE (above 1e9 N along an axis).
 // Threads: changes the cloth.
-TAUT_API taut_result taut_cloth_add_force(taut_cloth *cloth, uint32_t particle, const float force_n[3]);
+TAUT_API
+taut_result taut_cloth_add_force(taut_cloth *cloth,
+                                 uint32_t particle,
+                                 const float force_n[3]);
 
 // Still air of 1.2 kg/m^3, drag and lift 1.2: what a cloth with TAUT_FEATURE_AIR starts with.
 //
 // Threads: any.
-taut_air taut_air_default(void);
+TAUT_API taut_air taut_air_default(void);
 
 // Sets the air from the next step on. Needs TAUT_FEATURE_AIR. May be called every frame; but the budget counts drag as
 // damping, in steps of a factor of 2, so a wind that grows a lot makes the next step cut the stiffness anew.
@@ -889,13 +988,53 @@ taut_air taut_air_default(void);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF,
 // TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE. Then the former air stays.
 // Threads: changes the cloth.
-taut_result taut_cloth_set_air(taut_cloth *cloth, const taut_air *air);
+TAUT_API taut_result taut_cloth_set_air(taut_cloth *cloth, const taut_air *air);
 
 // The air as it is now. Needs TAUT_FEATURE_AIR.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_FEATURE_OFF.
 // Threads: reads the cloth.
-taut_result taut_cloth_air(const taut_cloth *cloth, taut_air *out);
+TAUT_API taut_result taut_cloth_air(const taut_cloth *cloth, taut_air *out);
+
+// The frame is at a new place at the end of the next step: that of the character whom the cloth follows. linear_inertia and
+// angular_inertia, 0 to 1, are the shares of its shift and its turn since the last frame that the cloth feels; with the rest
+// it is carried along, at no strain and no velocity. Pins and colliders go where they are told to be in the world, so it
+// does not matter whether they are moved before or after this call; a pin that is not moved stays where it is.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_OUT_OF_RANGE (also a way of more than 1e6 m along an axis: that is a teleport).
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_set_frame(taut_cloth *cloth,
+                                 const taut_frame *frame,
+                                 float linear_inertia,
+                                 float angular_inertia);
+
+// The cloth is elsewhere at once, with its pins and colliders and where they go to: it does not notice. A change of place alone
+// leaves every bit of the local state; a turn rounds positions and velocities.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_teleport(taut_cloth *cloth,
+                                const taut_frame *frame);
+
+// Moves the origin of the local frame, x, y, z in m, each at most 1e12 in size, and the cloth with all that is attached to it:
+// for engines that shift their world. The local state and its hash stay, to the bit.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NOT_FINITE,
+// TAUT_ERROR_OUT_OF_RANGE.
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_set_origin(taut_cloth *cloth,
+                                  const double origin_m[3]);
+
+// Where the frame is.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+TAUT_API taut_result taut_cloth_frame(const taut_cloth *cloth, taut_frame *out);
 
 // Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
 // calls give the same bits on every machine, whatever floating-point modes the engine has set.
@@ -937,18 +1076,6 @@ TAUT_API
 taut_result taut_cloth_step_all(taut_cloth *const *cloths,
                                 uint32_t count,
                                 uint32_t *out_flags);
-
-// Wakes a cloth that sleeps (taut_cloth_def.sleep_speed_m_s). Calls that change something do it by themselves.
-//
-// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
-// Threads: changes the cloth.
-taut_result taut_cloth_wake(taut_cloth *cloth);
-
-// Whether the cloth sleeps: 1, or 0.
-//
-// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
-// Threads: reads the cloth.
-taut_result taut_cloth_is_asleep(const taut_cloth *cloth, uint32_t *out);
 
 // The positions without a copy.
 //
@@ -1066,6 +1193,18 @@ taut_result taut_cloth_copy_normals_f32(const taut_cloth *cloth,
 // Threads: reads the cloth.
 TAUT_API taut_result taut_cloth_bounds(const taut_cloth *cloth, taut_bounds *out);
 
+// Wakes a cloth that sleeps (taut_cloth_def.sleep_speed_m_s). Calls that change something do it by themselves.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: changes the cloth.
+TAUT_API taut_result taut_cloth_wake(taut_cloth *cloth);
+
+// Whether the cloth sleeps: 1, or 0.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+TAUT_API taut_result taut_cloth_is_asleep(const taut_cloth *cloth, uint32_t *out);
+
 // Force with which a pin holds its particle in the state as it is now, x, y, z in N: the opposite of springs, weight, pull,
 // air and hinges on the particle; what it is pinned to feels the opposite. At rest the sum over the pins is the weight of
 // the sheet. What tethers, strain limits, colliders and targets carry is not in it, nor what accelerates the particle.
@@ -1075,6 +1214,7 @@ TAUT_API taut_result taut_cloth_bounds(const taut_cloth *cloth, taut_bounds *out
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_SUCH_PARTICLE,
 // TAUT_ERROR_NOT_PINNED.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).
+TAUT_API
 taut_result taut_cloth_pin_force(taut_cloth *cloth,
                                  uint32_t particle,
                                  float out_n[3]);
@@ -1086,6 +1226,7 @@ taut_result taut_cloth_pin_force(taut_cloth *cloth,
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED (cloth), TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_SHAPE (stride),
 // TAUT_ERROR_BLOCK_TOO_SMALL. Then nothing is written.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).
+TAUT_API
 taut_result taut_cloth_copy_pin_forces_f32(taut_cloth *cloth,
                                            void *out,
                                            size_t out_size,
@@ -1135,7 +1276,9 @@ taut_result taut_cloth_restore(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth (it settles what a change of pins does to the inertia).
-TAUT_API taut_result taut_cloth_state_hash(taut_cloth *cloth, uint64_t *out);
+TAUT_API
+taut_result taut_cloth_state_hash(taut_cloth *cloth,
+                                  uint64_t *out);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -17,6 +17,8 @@ const COARSE_SWEEPS: u32 = 4;
 
 /// Most cycles of a substep. More than one is needed only where pins move by several cells in a substep.
 const MOST_CYCLES: u32 = 32;
+/// Cycles that aim at the usual share of the limit.
+const GENTLE_CYCLES: u32 = 3;
 
 /// Planes of a coarse level: positions and inverse masses. All coarse levels together have at most as many nodes as the
 /// cloth has particles, since each halves at least one side.
@@ -125,8 +127,10 @@ impl Cloth<'_> {
             return;
         }
         self.begin_limits();
-        for _ in 0..MOST_CYCLES {
-            self.cycle(c);
+        for i in 0..MOST_CYCLES {
+            // what the first cycles cannot settle is aimed at from farther below
+            let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
+            self.cycle(c, target);
             if self.within_limits(c, 1.0) {
                 break;
             }
@@ -135,7 +139,7 @@ impl Cloth<'_> {
     }
 
     /// All levels once, the coarsest first.
-    fn cycle(&mut self, c: &Substep) {
+    fn cycle(&mut self, c: &Substep, target: f32) {
         // a chord across a hole says nothing about the cloth around it
         let count = if self.layout.mask { 1 } else { Level::count(&self.layout) };
         let numbers = core::mem::take(&mut self.levels.numbers);
@@ -158,7 +162,7 @@ impl Cloth<'_> {
                 x: nodes.x.each_mut().map(|p| &mut **p),
                 inverse: nodes.inverse,
                 mask: &[],
-                reach: self.reach(c, level.span, level.last_span()),
+                reach: self.reach(c, target, level.span, level.last_span()),
             };
             sheet.sweep(COARSE_SWEEPS, true);
             if k == 1 {
@@ -167,7 +171,7 @@ impl Cloth<'_> {
         }
         self.levels.numbers = numbers;
         self.tether_particles();
-        self.sweep_finest(c, self.def.strain_passes);
+        self.sweep_finest(c, target, self.def.strain_passes);
     }
 
     /// Where a level has moved its nodes to, less where their particles are: bilinearly between the nodes around a particle.

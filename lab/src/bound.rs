@@ -54,11 +54,11 @@ impl Throughput {
         };
         let lanes = width.lanes() as f64;
         let [sqrt, div, arithmetic] = kernels(width)?;
-        let mut from = vec![1.0f32; 1 << 20];
+        let from = vec![1.0f32; 1 << 20];
         let mut to = vec![0.0f32; 1 << 20];
         let byte_ns = (0..20)
             .map(|_| {
-                let t = nanoseconds(|| black_box(&mut to).copy_from_slice(black_box(&mut from)));
+                let t = nanoseconds(|| black_box(&mut to).copy_from_slice(black_box(&from)));
                 t / 8.0 / f64::from(1 << 20)
             })
             .fold(f64::INFINITY, f64::min);
