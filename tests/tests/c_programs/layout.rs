@@ -190,7 +190,7 @@ fn the_macro_for_static_storage_is_the_query() {
     for (rows, columns) in [(2, 2), (3, 16), (17, 15), (32, 32), (33, 1), (128, 64), (4096, 4096)] {
         let columns = columns.max(2);
         for families in [1, 3, 5, 7] {
-            for features in [0, 1] {
+            for features in [0, 1, 1024, 2047] {
                 for max_pins in [0, 1, 3, rows.min(columns)] {
                     let grid =
                         Grid::new(&GridDef { rows, columns, families: taut::Families(families), ..GridDef::default() })
