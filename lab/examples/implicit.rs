@@ -25,7 +25,7 @@ struct Fabric {
     substeps: [u32; 2],
 }
 
-/// The fabrics of facts/physics.md, 7, as warp, weft, shear, bend.
+/// Two fabrics as warp, weft, shear, bend in N/m.
 const FABRICS: [Fabric; 2] = [
     Fabric { name: "denim", k: [2028.0, 410.0, 107.0, 1.0], density: 0.324, substeps: [64, 192] },
     Fabric { name: "stiff woven", k: [3900.0, 3900.0, 60.0, 1.0], density: 0.2, substeps: [96, 288] },
