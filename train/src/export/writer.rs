@@ -22,7 +22,7 @@ use super::proto::{ModelProto, OperatorSetIdProto, StringStringEntryProto, data_
 use super::words::check_words;
 use super::{ExportError, ExportMeta, MAX_FILE_BYTES, TOKENS, WordTable};
 use crate::nets::generator::Deconvolution;
-use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, Generator, NOISE};
+use crate::nets::{CHANNELS, DESCRIPTION, DESCRIPTION_EPSILON, FABRIC, GRID, Generator, NOISE};
 
 /// Version of the operators; both runtimes that matter know it.
 const OPSET: i64 = 17;
@@ -70,13 +70,21 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let axis2 = g.integers("axis_2", &[2]);
     let axes23 = g.integers("axes_2_3", &[2, 3]);
 
-    // The description: the mean of the word vectors.
+    // The description: the mean of the word vectors, scaled to a mean square of 1 as `nets::normalise` does it.
     let table = g.halves("words", &[words.tokens.len(), DESCRIPTION], &words.vectors)?;
     let gathered = g.node("words.gathered", "Gather", &[&table, "tokens"], vec![]);
     let vectors = g.cast("words.vectors", &gathered);
     let shares = g.node("words.shares", "Unsqueeze", &["weights", &axis2], vec![]);
     let weighted = g.node("words.weighted", "Mul", &[&vectors, &shares], vec![]);
-    let description = g.sum_over("description", &weighted, &axis1);
+    let mean = g.sum_over("words.mean", &weighted, &axis1, false);
+    let squares = g.node("words.squares", "Mul", &[&mean, &mean], vec![]);
+    let sum = g.sum_over("words.sum_of_squares", &squares, &axis1, true);
+    let count = g.floats("words.count", &[DESCRIPTION as f32]);
+    let mean_square = g.node("words.mean_square", "Div", &[&sum, &count], vec![]);
+    let epsilon = g.floats("words.epsilon", &[DESCRIPTION_EPSILON]);
+    let above_zero = g.node("words.above_zero", "Add", &[&mean_square, &epsilon], vec![]);
+    let root = g.node("words.root", "Sqrt", &[&above_zero], vec![]);
+    let description = g.node("description", "Div", &[&mean, &root], vec![]);
 
     let head = g.linear("fabric.head", &description, &m.fabric)?;
     g.node("fabric", "Tanh", &[&head], vec![]);

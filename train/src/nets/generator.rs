@@ -21,6 +21,8 @@
 //! `pins`, the distance to the nearest pin, joins behind the normalisation: it is in [0, 1] already, and the statistics
 //! of one scene must not shift what another scene shows.
 //!
+//! The description is scaled to one length first ([`super::description`]): one word says as much as three.
+//!
 //! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
 //! whole. Noise does not reach it: another seed is another piece of the same fabric.
 
@@ -33,7 +35,7 @@ use burn::tensor::activation::{relu, tanh};
 use serde::{Deserialize, Serialize};
 
 use super::init::LayerBuilder;
-use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError};
+use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError, normalise};
 
 /// What a generator is built from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,9 +52,6 @@ impl Default for GeneratorConfig {
 
 impl GeneratorConfig {
     /// A generator with first weights from `seed`; on an autodiff device it is ready to train.
-    ///
-    /// The description vectors should have entries of about unit size, like the noise: 1024 entries of 1/32 (vectors of
-    /// unit length) would be ten times quieter than the noise in the first layer.
     ///
     /// # Errors
     /// [`NetError::Width`].
@@ -134,6 +133,7 @@ impl Generator {
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
     pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
+        let description = normalise(description);
         let fabric = tanh(self.fabric.forward(description.clone()));
         let v = Tensor::cat(vec![description, noise], 1);
         let [batch, n] = v.dims();

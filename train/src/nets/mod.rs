@@ -4,11 +4,13 @@
 //! running statistics. Their first weights come from a seed through a counter-free stream of our own, not from the
 //! global generator of the backend, so that two threads that build networks at once cannot disturb each other.
 
+pub mod description;
 pub mod discriminator;
 pub mod error;
 pub mod generator;
 pub mod init;
 
+pub use description::{DESCRIPTION_EPSILON, normalise};
 pub use discriminator::{Discriminator, DiscriminatorConfig};
 pub use error::NetError;
 pub use generator::{Generator, GeneratorConfig, GeneratorOutput};
