@@ -26,8 +26,7 @@ const EVALUATION: u64 = 0x6576_616c;
 const STREAM: u64 = 0x7374_7265;
 
 /// Least share of shear in the mean structural stiffness. A game's step cuts every family alike, and then a weak shear takes
-/// the strain: of the shares from 0.03 to 1 this is the smallest at which every fabric of the tables stays near the best
-/// that any of them gives, in hang2, edge and hang1 (docs/training.md).
+/// the strain. More than this costs the warp its budget, and knits their own stretch (table in docs/training.md).
 const LEAST_SHEAR: f32 = 0.15;
 
 /// The stiffness that the net shall say for a fabric, in N/m: the physical one, with shear raised to 0.15 of the mean
