@@ -139,17 +139,14 @@ impl Dataset {
         fabric::sample(self.seed ^ STREAM, index)
     }
 
-    /// The description vector of some words: the mean of their vectors, [1024].
+    /// The description vector of some words: the sum of their vectors, [1024].
     pub fn describe(&self, words: &str) -> Vec<f32> {
         let mut sum = vec![0.0f32; DESCRIPTION];
-        let mut known = 0;
         for word in self.indices(words) {
-            known += 1;
             for (s, x) in sum.iter_mut().zip(self.words.vector(word)) {
                 *s += x;
             }
         }
-        sum.iter_mut().for_each(|s| *s /= known.max(1) as f32);
         sum
     }
 
@@ -176,10 +173,14 @@ impl Dataset {
         for (k, coding) in k.iter().zip(&self.codings.0) {
             field.extend(factors.iter().map(|f| coding.encode(f64::from(*k) * f) as f32));
         }
+        (field, self.numbers(fabric).map(|t| t as f32).to_vec())
+    }
+
+    /// The fabric's own numbers, the second part of [`Dataset::target`].
+    pub fn numbers(&self, fabric: &Fabric) -> [f64; FABRIC] {
         let limits = stretch_limits(fabric);
         let numbers = [fabric.density_kg_m2, fabric.hinge_rigidity_n_m, limits[0], limits[1], limits[2]];
-        let told = numbers.iter().zip(&self.codings.1).map(|(x, c)| c.encode(f64::from(*x)) as f32).collect();
-        (field, told)
+        std::array::from_fn(|i| self.codings.1[i].encode(f64::from(numbers[i])))
     }
 }
 

@@ -13,6 +13,7 @@
 mod checkpoint;
 mod config;
 mod data;
+mod head;
 mod losses;
 mod program;
 mod trainer;

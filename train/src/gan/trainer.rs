@@ -3,14 +3,14 @@ use std::sync::Arc;
 
 use burn::Tensor;
 use burn::grad_clipping::GradientClippingConfig;
-use burn::module::Module;
+use burn::module::{Module, Param};
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
 use burn::tensor::{Device, TensorData};
 use serde::Serialize;
 use taut::noise;
 
 use super::{Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
-use super::{discriminator_loss, generator_loss, weight_penalty};
+use super::{discriminator_loss, generator_loss, head, weight_penalty};
 use crate::cloth::{self, equilibrium};
 use crate::image::{
     AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
@@ -95,12 +95,19 @@ impl Trainer {
             ..DiscriminatorConfig::default()
         }
         .init(config.seed ^ 0xd15c, &device);
+        let mut generator = generator.map_err(TrainError::part)?;
+        if config.steps.matching > 0 {
+            let (weights, biases) = head::fit(&data)?;
+            let head = &mut generator.fabric;
+            head.weight = Param::from_data(TensorData::new(weights, [DESCRIPTION, FABRIC]), &device);
+            head.bias = Some(Param::from_data(TensorData::new(biases, [FABRIC]), &device));
+        }
         Ok(Trainer {
             config: config.clone(),
             data,
             renderer,
             device,
-            generator: generator.map_err(TrainError::part)?,
+            generator,
             discriminator: discriminator.map_err(TrainError::part)?,
             generator_optimizer: clipped.init(),
             discriminator_optimizer: adam.init(),

@@ -1,16 +1,21 @@
-//! The description vector as the networks take it: of one length, whatever the number of its words.
+//! The description vector, the sum of the word vectors, and what the networks make of it: field and pictures take it
+//! scaled to one length, whatever the number of words; the numbers of the fabric take the sum, since there each word
+//! is a factor (of the density and so on) and their logarithms add up.
 
 use burn::Tensor;
 
 use super::DESCRIPTION;
 
-/// Added to the mean square of a description in front of the root, so that no words give zero and not 0/0. The mean of 16
-/// word vectors of length 1 that have nothing in common has a mean square of 6e-5, of which this is 1e-5.
-pub const DESCRIPTION_EPSILON: f32 = 6e-10;
+/// Added to the mean square of a description in front of the root, so that no words give zero and not 0/0. A word vector
+/// has length 1, so a mean square of 1/1024, of which this is 1e-5.
+pub const DESCRIPTION_EPSILON: f32 = 1e-8;
+
+/// Added to the sum of the squares of the words' shares, which is 1/n for n words: mean / sum is the sum of the vectors,
+/// and no words give zero and not 0/0. It is below the last digit of 1/16.
+pub const SHARES_EPSILON: f32 = 1e-9;
 
 /// Scales descriptions [batch, 1024] so that their numbers have the mean square 1, as the noise beside them has (the length
-/// is 32); zero stays zero. The mean of several word vectors is shorter than one of them: the mean alone would tell how
-/// many words there were, louder than what they say.
+/// is 32); zero stays zero. Otherwise the length would tell how many words there were, louder than what they say.
 pub fn normalise(description: Tensor<2>) -> Tensor<2> {
     let mean_square = description.clone().square().sum_dim(1) / DESCRIPTION as f32;
     description / (mean_square + DESCRIPTION_EPSILON).sqrt()

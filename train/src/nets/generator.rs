@@ -24,7 +24,8 @@
 //! The description is scaled to one length first ([`super::description`]): one word says as much as three.
 //!
 //! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
-//! whole. Noise does not reach it: another seed is another piece of the same fabric.
+//! whole; it takes the sum of the words as it is, for the logarithms of their factors add up. Noise does not reach it:
+//! another seed is another piece of the same fabric.
 
 use burn::Tensor;
 use burn::module::Module;
@@ -129,13 +130,12 @@ pub struct GeneratorOutput {
 }
 
 impl Generator {
-    /// Runs the network: description [batch, 1024], noise [batch, 128], distance to the nearest pin
+    /// Runs the network: description [batch, 1024] (the sum of the word vectors), noise [batch, 128], distance to the nearest pin
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
     pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
-        let description = normalise(description);
         let fabric = tanh(self.fabric.forward(description.clone()));
-        let v = Tensor::cat(vec![description, noise], 1);
+        let v = Tensor::cat(vec![normalise(description), noise], 1);
         let [batch, n] = v.dims();
         let a1 = relu(self.first.forward(v.reshape([batch, n, 1, 1])));
         let skip = self.skip.forward(a1.clone());

@@ -10,12 +10,12 @@ pub mod error;
 pub mod generator;
 pub mod init;
 
-pub use description::{DESCRIPTION_EPSILON, normalise};
+pub use description::{DESCRIPTION_EPSILON, SHARES_EPSILON, normalise};
 pub use discriminator::{Discriminator, DiscriminatorConfig};
 pub use error::NetError;
 pub use generator::{Generator, GeneratorConfig, GeneratorOutput};
 
-/// Length of the description vector: the mean of the word vectors (paper, section V.A.1).
+/// Length of the description vector: the sum of the word vectors, of which the paper takes the mean (section V.A.1).
 pub const DESCRIPTION: usize = 1024;
 /// Length of the Gaussian noise vector (paper, section V.A.1).
 pub const NOISE: usize = 128;
