@@ -72,6 +72,24 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 }
 
 #[test]
+fn the_fabric_hears_the_sum_of_the_words_and_the_field_only_where_it_points() {
+    let device = Device::flex();
+    let g = GeneratorConfig { width: 4 }.init(5, &device).expect("width");
+    let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
+    let pins = random([1, 1, 32, 32], 2, &device).abs();
+    let once = g.forward(words.clone(), noise.clone(), pins.clone());
+    let twice = g.forward(words.mul_scalar(2.0), noise, pins);
+    for (a, b) in host(once.field).into_iter().zip(host(twice.field)) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
+    }
+    // in front of tanh: head(2 x) = 2 head(x) - bias
+    let bias = host(g.fabric.bias.as_ref().expect("a bias").val());
+    for ((a, b), bias) in host(once.fabric).into_iter().zip(host(twice.fabric)).zip(bias) {
+        assert!((2.0 * a.atanh() - bias - b.atanh()).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+#[test]
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {

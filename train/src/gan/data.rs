@@ -252,3 +252,19 @@ fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainE
     let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ()).map_err(TrainError::part)?;
     Ok(outcome.positions.into_flattened())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_words_knows_every_word_of_the_samples() {
+        let table = WordTable::committed().expect("the table that ships");
+        let names = fabric::KINDS.iter().flat_map(|k| k.names.iter().chain(k.words));
+        let modifiers = fabric::MODIFIERS.iter().map(|m| &m.0);
+        for word in names.chain(modifiers).chain(&fabric::COLOURS) {
+            let (known, unknown) = resolve(word, &|w| table.index(w));
+            assert!(!known.is_empty() && unknown.is_empty(), "{word}: {unknown:?}");
+        }
+    }
+}
