@@ -22,7 +22,7 @@ pub(crate) fn infer(call: &Call<'_>) -> Result<Value, Error> {
         "ConvTranspose" => convolution(call, true),
         "Conv" => convolution(call, false),
         "BatchNormalization" => batch_normalization(call),
-        "Relu" | "Tanh" | "Identity" => element_wise(call, &[]),
+        "Relu" | "Tanh" | "Sqrt" | "Identity" => element_wise(call, &[]),
         "LeakyRelu" => element_wise(call, &["alpha"]),
         "Gemm" => gemm(call),
         "MatMul" => mat_mul(call),

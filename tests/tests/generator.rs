@@ -45,12 +45,18 @@ fn hang(description: &str, scene: Scene, substeps: u32) -> [Outcome; 3] {
 fn stiffness_and_density_stand_in_the_order_of_the_fabrics() {
     let [denim, silk, jersey] = ["denim", "silk", "jersey knit"].map(|d| ask(d, Scene::Hang2, 0));
     let (a, b, c) = (medians(&denim), medians(&silk), medians(&jersey));
-    // along warp, and on average; the wefts of denim (measured) and silk (estimated) are 5 % apart, below the net's accuracy
-    for of in [|m: &[f32; 3]| m[0], |m: &[f32; 3]| 0.5 * (m[0] + m[1])] {
-        assert!(of(&a) > of(&b) && of(&b) > of(&c), "{a:?} {b:?} {c:?}");
+    for (channel, name) in ["warp", "weft"].into_iter().enumerate() {
+        assert!(a[channel] > b[channel] && b[channel] > c[channel], "{name}: {a:?} {b:?} {c:?}");
     }
     let density = [silk.density_kg_m2, jersey.density_kg_m2, denim.density_kg_m2];
     assert!(density[0] < density[1] && density[1] < density[2], "{density:?}");
+}
+
+#[test]
+fn one_word_says_the_measured_density() {
+    // a description of one word once was a longer vector than others, and denim was told too heavy by 40 %
+    let (told, measured) = (ask("denim", Scene::Hang2, 0).density_kg_m2, 0.324);
+    assert!((told / measured - 1.0f32).abs() < 0.15, "{told}");
 }
 
 #[test]
@@ -72,22 +78,44 @@ fn a_seed_gives_a_field_and_the_same_seed_the_same_bytes() {
 
 #[test]
 fn the_field_keeps_the_cloth_from_over_stretching() {
-    for description in ["denim", "cotton jersey t-shirt", "swimsuit"] {
+    for description in ["denim", "cotton jersey t-shirt", "rib knit", "sweatshirt", "swimsuit"] {
         let [reference, uniform, generated] = hang(description, Scene::Hang2, 16).map(|o| o.stretch_pct);
         println!("{description}: reference {reference:?} uniform {uniform:?} generated {generated:?}");
         assert!((14.0..=17.0).contains(&uniform.max), "uniform {}", uniform.max);
         assert!(generated.max <= 1.25 * reference.max + 1.0, "{description}: {} of {}", generated.max, reference.max);
         assert!(generated.ex_pin_max <= uniform.ex_pin_max + 2.0, "{description}: {}", generated.ex_pin_max);
     }
-    // a stiff woven
-    for (substeps, most) in [(16, 4.0), (32, 2.2)] {
-        let [_, _, generated] = hang("polyester tablecloth", Scene::Hang2, substeps).map(|o| o.stretch_pct);
-        println!("tablecloth x {substeps}: {generated:?}");
-        assert!(generated.max <= most, "tablecloth at {substeps} substeps: {}", generated.max);
+    // stiff wovens
+    for description in ["polyester tablecloth", "cotton", "linen", "canvas"] {
+        for (substeps, most) in [(16, 4.0), (32, 2.2)] {
+            let [_, uniform, generated] = hang(description, Scene::Hang2, substeps).map(|o| o.stretch_pct);
+            println!("{description} x {substeps}: {generated:?}");
+            assert!(generated.max <= most, "{description} at {substeps} substeps: {}", generated.max);
+            assert!(generated.ex_pin_max <= uniform.ex_pin_max + 2.0, "{description}: {}", generated.ex_pin_max);
+        }
     }
-    let [_, _, edge] = hang("denim", Scene::Edge, 16).map(|o| o.stretch_pct);
-    // uniform K has 2.0 %; the aim is 1.3 %, which this generator misses (docs/training.md)
-    assert!(edge.max <= 1.8, "edge {}", edge.max);
+}
+
+#[test]
+fn a_cloth_on_its_edge_stretches_less_than_uniform_k() {
+    // uniform K has 2.0 % and, with the inertia field, 1.1 %
+    for description in ["denim", "polyester tablecloth", "cotton jersey t-shirt"] {
+        let [_, _, edge] = hang(description, Scene::Edge, 16).map(|o| o.stretch_pct);
+        println!("{description}: {edge:?}");
+        assert!(edge.max <= 1.3, "{description}: {}", edge.max);
+    }
+}
+
+#[test]
+fn on_one_corner_soft_fabrics_stretch_as_the_reference_and_stiff_ones_as_the_step_allows() {
+    for description in ["denim", "cotton jersey t-shirt", "rib knit", "swimsuit"] {
+        let [reference, _, generated] = hang(description, Scene::Hang1, 16).map(|o| o.stretch_pct);
+        println!("{description}: reference {reference:?} generated {generated:?}");
+        assert!(generated.max <= 2.0 * reference.max, "{description}: {} of {}", generated.max, reference.max);
+    }
+    // 0.5 % cannot be had at this step: uniform K with the inertia field has 5.2 %
+    let [_, _, generated] = hang("polyester tablecloth", Scene::Hang1, 16).map(|o| o.stretch_pct);
+    assert!(generated.max <= 5.2, "tablecloth: {}", generated.max);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use burn::Tensor;
 use burn::module::Module;
 use burn::tensor::{Device, TensorData};
 use taut_train::nets::init::SplitMix64;
-use taut_train::nets::{Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput};
+use taut_train::nets::{Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput, normalise};
 
 fn random<const D: usize>(shape: [usize; D], seed: u64, device: &Device) -> Tensor<D> {
     let mut s = SplitMix64::new(seed);
@@ -72,6 +72,24 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 }
 
 #[test]
+fn the_fabric_hears_the_sum_of_the_words_and_the_field_only_where_it_points() {
+    let device = Device::flex();
+    let g = GeneratorConfig { width: 4 }.init(5, &device).expect("width");
+    let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
+    let pins = random([1, 1, 32, 32], 2, &device).abs();
+    let once = g.forward(words.clone(), noise.clone(), pins.clone());
+    let twice = g.forward(words.mul_scalar(2.0), noise, pins);
+    for (a, b) in host(once.field).into_iter().zip(host(twice.field)) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
+    }
+    // in front of tanh: head(2 x) = 2 head(x) - bias
+    let bias = host(g.fabric.bias.as_ref().expect("a bias").val());
+    for ((a, b), bias) in host(once.fabric).into_iter().zip(host(twice.fabric)).zip(bias) {
+        assert!((2.0 * a.atanh() - bias - b.atanh()).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+#[test]
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {
@@ -129,7 +147,7 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     assert!(before.0.iter().all(|m| *m == 0.0) && before.1.iter().all(|v| *v == 1.0));
     generate(&g, 8, 1, &device);
     // The input of the second layer's normalisation, by hand: the running mean moves a tenth of the way to its mean.
-    let v = Tensor::cat(vec![random([8, 1024], 1, &device), random([8, 128], 2, &device)], 1);
+    let v = Tensor::cat(vec![normalise(random([8, 1024], 1, &device)), random([8, 128], 2, &device)], 1);
     let a1 = burn::tensor::activation::relu(g.first.forward(v.reshape([8, 1152, 1, 1])));
     let expected = host(a1.mean_dims(&[0, 2, 3]).reshape([32]));
     let after = statistics(&g);

@@ -164,9 +164,9 @@ impl GraphBuilder {
         Ok(self.node(name, "Add", &[&product, &b], vec![]))
     }
 
-    /// The sum over the axes that the constant `axes` names; they vanish.
-    pub(super) fn sum_over(&mut self, name: &str, x: &str, axes: &str) -> String {
-        self.node(name, "ReduceSum", &[x, axes], vec![int("keepdims", 0)])
+    /// The sum over the axes that the constant `axes` names; they vanish, or stay with length 1 if `keep` is set.
+    pub(super) fn sum_over(&mut self, name: &str, x: &str, axes: &str, keep: bool) -> String {
+        self.node(name, "ReduceSum", &[x, axes], vec![int("keepdims", keep.into())])
     }
 
     pub(super) fn concat(&mut self, name: &str, inputs: &[&str]) -> String {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::half_precision::round;
 use super::{ExportError, TOKENS, WordTable, round_to_f16};
-use crate::nets::{DESCRIPTION, GRID, Generator, NOISE};
+use crate::nets::{DESCRIPTION, GRID, Generator, NOISE, SHARES_EPSILON};
 
 /// Inputs of the generator file for a batch, each flat and row-major.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -75,6 +75,8 @@ pub fn run_rounded(generator: &Generator, words: &WordTable, input: &ParityInput
                 *s += weight * x;
             }
         }
+        let share = weights.iter().map(|w| w * w).sum::<f32>() + SHARES_EPSILON;
+        sum.iter_mut().for_each(|s| *s /= share);
     }
     let rounded = round_to_f16(generator);
     let device = Device::flex();

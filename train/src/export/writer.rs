@@ -22,7 +22,7 @@ use super::proto::{ModelProto, OperatorSetIdProto, StringStringEntryProto, data_
 use super::words::check_words;
 use super::{ExportError, ExportMeta, MAX_FILE_BYTES, TOKENS, WordTable};
 use crate::nets::generator::Deconvolution;
-use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, Generator, NOISE};
+use crate::nets::{CHANNELS, DESCRIPTION, DESCRIPTION_EPSILON, FABRIC, GRID, Generator, NOISE, SHARES_EPSILON};
 
 /// Version of the operators; both runtimes that matter know it.
 const OPSET: i64 = 17;
@@ -70,17 +70,30 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let axis2 = g.integers("axis_2", &[2]);
     let axes23 = g.integers("axes_2_3", &[2, 3]);
 
-    // The description: the mean of the word vectors.
+    // The description: the sum of the word vectors, which is n times their mean; 1/n is the sum of the squared shares.
     let table = g.halves("words", &[words.tokens.len(), DESCRIPTION], &words.vectors)?;
     let gathered = g.node("words.gathered", "Gather", &[&table, "tokens"], vec![]);
     let vectors = g.cast("words.vectors", &gathered);
     let shares = g.node("words.shares", "Unsqueeze", &["weights", &axis2], vec![]);
     let weighted = g.node("words.weighted", "Mul", &[&vectors, &shares], vec![]);
-    let description = g.sum_over("description", &weighted, &axis1);
-
-    let head = g.linear("fabric.head", &description, &m.fabric)?;
+    let mean = g.sum_over("words.mean", &weighted, &axis1, false);
+    let share_squares = g.node("words.share_squares", "Mul", &["weights", "weights"], vec![]);
+    let share = g.sum_over("words.share", &share_squares, &axis1, true);
+    let share_epsilon = g.floats("words.share_epsilon", &[SHARES_EPSILON]);
+    let share = g.node("words.share_above_zero", "Add", &[&share, &share_epsilon], vec![]);
+    let words = g.node("words.sum", "Div", &[&mean, &share], vec![]);
+    let head = g.linear("fabric.head", &words, &m.fabric)?;
     g.node("fabric", "Tanh", &[&head], vec![]);
 
+    // Scaled to a mean square of 1, as `nets::normalise` does it.
+    let squares = g.node("words.squares", "Mul", &[&words, &words], vec![]);
+    let sum = g.sum_over("words.sum_of_squares", &squares, &axis1, true);
+    let count = g.floats("words.count", &[DESCRIPTION as f32]);
+    let mean_square = g.node("words.mean_square", "Div", &[&sum, &count], vec![]);
+    let epsilon = g.floats("words.epsilon", &[DESCRIPTION_EPSILON]);
+    let above_zero = g.node("words.above_zero", "Add", &[&mean_square, &epsilon], vec![]);
+    let root = g.node("words.root", "Sqrt", &[&above_zero], vec![]);
+    let description = g.node("description", "Div", &[&words, &root], vec![]);
     let v = g.concat("v", &[&description, "noise"]);
     let v = g.node("v.pixel", "Unsqueeze", &[&v, &axes23], vec![]);
     let first = g.deconvolution("first", &v, &m.first)?;

@@ -47,8 +47,10 @@ pub struct TrainConfig {
     pub batch: usize,
     /// Steps of the stages.
     pub steps: StageSteps,
-    /// Adam's step size of the first stage.
+    /// Adam's step size at the start of the first stage; it falls geometrically to `matching_end` of it.
     pub matching_rate: f64,
+    /// Share of the first stage's step size that is left at its end.
+    pub matching_end: f64,
     /// Adam's step size of the others; the paper's is 1e-4.
     pub learning_rate: f64,
     /// Adam's first momentum; the paper's is 0.9.
@@ -67,6 +69,10 @@ pub struct TrainConfig {
     pub paired: f64,
     /// Weight of the prior that keeps the field near what the words mean, so the ratios of its channels; 0 in the paper.
     pub prior: f64,
+    /// Weight of the smoothness beside the field in that prior and in the first stage: of the mean square of what ln(K)
+    /// differs more between neighbours than the words say. A spring carries what its neighbour hands on, so one soft
+    /// particle in a stiff field is where the cloth stretches. Grows from 0 over the first stage. 0 turns it off.
+    pub smoothness: f64,
     /// Weight of the positions in the second stage, per m^2.
     pub position_weight: f64,
     /// Weight of the stretch in the second stage.
@@ -95,8 +101,9 @@ impl Default for TrainConfig {
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
-            steps: StageSteps { matching: 800, positions: 60, adversarial: 60 },
+            steps: StageSteps { matching: 500, positions: 40, adversarial: 20 },
             matching_rate: 2e-3,
+            matching_end: 0.03,
             learning_rate: 1e-4,
             beta1: 0.9,
             epoch_pictures: 4615,
@@ -106,8 +113,9 @@ impl Default for TrainConfig {
             phi: 1e-3,
             paired: 2.0,
             prior: 2.0,
+            smoothness: 0.5,
             position_weight: 1e3,
-            stretch_weight: 30.0,
+            stretch_weight: 1e3,
             variation: 0.12,
             picture_noise: [0.01, 0.05],
             substeps: vec![8, 16, 48],
@@ -160,12 +168,14 @@ impl TrainConfig {
         for (rate, name) in [(self.matching_rate, "matching_rate"), (self.learning_rate, "learning_rate")] {
             must(rate > 0.0 && rate <= 1.0, &format!("{name} must be above 0 and at most 1"))?;
         }
+        must(self.matching_end > 0.0 && self.matching_end <= 1.0, "matching_end must be above 0 and at most 1")?;
         must((0.0..1.0).contains(&self.beta1), "beta1 must be 0 to below 1")?;
         must(self.epoch_pictures > 0 && self.halve_every_epochs > 0, "epochs must not be empty")?;
         must(
             [self.alpha, self.beta, self.phi, self.paired, self.prior].into_iter().all(share)
                 && share(self.position_weight)
-                && share(self.stretch_weight),
+                && share(self.stretch_weight)
+                && share(self.smoothness),
             "weights of losses must be 0 to 1e6",
         )?;
         must((0.0..=1.0).contains(&self.variation), "variation must be 0 to 1")?;

@@ -21,22 +21,20 @@ pub const SCENES: [Scene; 2] = [Scene::Hang2, Scene::Edge];
 /// Seconds after which the reference cloth is at rest (damping 2 1/s).
 const REFERENCE_SECONDS: f32 = 8.0;
 
-/// Word vectors of length 1 are multiplied by the square root of their 1024 dimensions: then their numbers are of the size
-/// of the noise beside them, and the net does not have to find the words under it. A power of two: exact in f16.
-const WORD_SCALE: f32 = 32.0;
-
 /// Seeds of the training set, the evaluation set and the stream of the first stage differ by these.
 const EVALUATION: u64 = 0x6576_616c;
 const STREAM: u64 = 0x7374_7265;
 
-/// The stiffness that the net shall say for a fabric, in N/m: the physical one, with shear raised to 0.3 of the mean
-/// structural stiffness, 0.15 for a knit. A game's step cuts every family alike, and then a weak shear takes the strain:
-/// this ratio is the best analytic choice there (docs/training.md). A knit is cut less, and keeps more of its own.
+/// Least share of shear in the mean structural stiffness. A game's step cuts every family alike, and then a weak shear takes
+/// the strain. More than this costs the warp its budget, and knits their own stretch (table in docs/training.md).
+const LEAST_SHEAR: f32 = 0.15;
+
+/// The stiffness that the net shall say for a fabric, in N/m: the physical one, with shear raised to 0.15 of the mean
+/// structural stiffness where it is below.
 pub fn corrected_stiffness(fabric: &Fabric) -> [f32; 4] {
     let [warp, weft, shear, bend] = fabric.stiffness;
     let mean = 0.5 * (warp + weft);
-    let share = if fabric.is_soft() { 0.15 } else { 0.3 };
-    [warp, weft, shear.max(share * mean), bend.min(taut::BEND_SHARE * mean)]
+    [warp, weft, shear.max(LEAST_SHEAR * mean), bend.min(taut::BEND_SHARE * mean)]
 }
 
 /// How numbers are written in tanh's range: -1 and 1 are the ends of a range, logarithmic in between.
@@ -97,12 +95,11 @@ impl Dataset {
     /// Makes the reference cloths. `progress` hears the share that is done.
     pub fn new(
         config: &TrainConfig,
-        mut words: WordTable,
+        words: WordTable,
         meta: &ExportMeta,
         renderer: &Renderer,
         mut progress: impl FnMut(f32),
     ) -> Result<Dataset, TrainError> {
-        words.vectors.iter_mut().for_each(|x| *x *= WORD_SCALE);
         let total = (config.fabrics + config.evaluation_fabrics) * SCENES.len();
         let mut done = 0;
         let mut set = |seed: u64, count: usize| -> Result<Vec<Example>, TrainError> {
@@ -142,17 +139,14 @@ impl Dataset {
         fabric::sample(self.seed ^ STREAM, index)
     }
 
-    /// The description vector of some words: the mean of their vectors, [1024].
+    /// The description vector of some words: the sum of their vectors, [1024].
     pub fn describe(&self, words: &str) -> Vec<f32> {
         let mut sum = vec![0.0f32; DESCRIPTION];
-        let mut known = 0;
         for word in self.indices(words) {
-            known += 1;
             for (s, x) in sum.iter_mut().zip(self.words.vector(word)) {
                 *s += x;
             }
         }
-        sum.iter_mut().for_each(|s| *s /= known.max(1) as f32);
         sum
     }
 
@@ -174,18 +168,19 @@ impl Dataset {
     pub fn target(&self, fabric: &Fabric, noise: &[f32]) -> (Vec<f32>, Vec<f32>) {
         let k = corrected_stiffness(fabric);
         let mut field = Vec::with_capacity(CHANNELS * GRID * GRID);
+        let factors: Vec<f64> =
+            (0..GRID * GRID).map(|i| (self.variation * pattern(noise, i / GRID, i % GRID)).exp()).collect();
         for (k, coding) in k.iter().zip(&self.codings.0) {
-            for row in 0..GRID {
-                for column in 0..GRID {
-                    let ln = self.variation * pattern(noise, row, column);
-                    field.push(coding.encode(f64::from(*k) * ln.exp()) as f32);
-                }
-            }
+            field.extend(factors.iter().map(|f| coding.encode(f64::from(*k) * f) as f32));
         }
+        (field, self.numbers(fabric).map(|t| t as f32).to_vec())
+    }
+
+    /// The fabric's own numbers, the second part of [`Dataset::target`].
+    pub fn numbers(&self, fabric: &Fabric) -> [f64; FABRIC] {
         let limits = stretch_limits(fabric);
         let numbers = [fabric.density_kg_m2, fabric.hinge_rigidity_n_m, limits[0], limits[1], limits[2]];
-        let told = numbers.iter().zip(&self.codings.1).map(|(x, c)| c.encode(f64::from(*x)) as f32).collect();
-        (field, told)
+        std::array::from_fn(|i| self.codings.1[i].encode(f64::from(numbers[i])))
     }
 }
 
@@ -256,4 +251,20 @@ fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainE
     };
     let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ()).map_err(TrainError::part)?;
     Ok(outcome.positions.into_flattened())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_words_knows_every_word_of_the_samples() {
+        let table = WordTable::committed().expect("the table that ships");
+        let names = fabric::KINDS.iter().flat_map(|k| k.names.iter().chain(k.words));
+        let modifiers = fabric::MODIFIERS.iter().map(|m| &m.0);
+        for word in names.chain(modifiers).chain(&fabric::COLOURS) {
+            let (known, unknown) = resolve(word, &|w| table.index(w));
+            assert!(!known.is_empty() && unknown.is_empty(), "{word}: {unknown:?}");
+        }
+    }
 }

@@ -13,6 +13,7 @@
 mod checkpoint;
 mod config;
 mod data;
+mod head;
 mod losses;
 mod program;
 mod trainer;
@@ -22,7 +23,7 @@ pub use config::{StageSteps, TrainConfig};
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
 pub use losses::{Ratings, discriminator_loss, generator_loss, weight_penalty};
 pub use program::{RunArgs, run};
-pub use trainer::{Stage, Trainer};
+pub use trainer::{Stage, Trainer, pin_map};
 
 use std::fmt;
 

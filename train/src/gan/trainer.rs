@@ -3,20 +3,21 @@ use std::sync::Arc;
 
 use burn::Tensor;
 use burn::grad_clipping::GradientClippingConfig;
-use burn::module::Module;
+use burn::module::{Module, Param};
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
 use burn::tensor::{Device, TensorData};
 use serde::Serialize;
 use taut::noise;
 
 use super::{Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
-use super::{discriminator_loss, generator_loss, weight_penalty};
+use super::{discriminator_loss, generator_loss, head, weight_penalty};
 use crate::cloth::{self, equilibrium};
 use crate::image::{
     AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
 };
 use crate::nets::{
-    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig, NOISE,
+    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig,
+    GeneratorOutput, NOISE,
 };
 
 /// What a step trains on.
@@ -46,6 +47,8 @@ pub struct Losses {
     pub field: f64,
     /// Fabric numbers, likewise.
     pub fabric: f64,
+    /// Mean square of what ln(K) differs more between neighbours than the words say.
+    pub roughness: f64,
     /// Positions: mean squared distance in mm^2.
     pub position_mm2: f64,
     /// Stretch: root mean square difference in percent.
@@ -92,12 +95,19 @@ impl Trainer {
             ..DiscriminatorConfig::default()
         }
         .init(config.seed ^ 0xd15c, &device);
+        let mut generator = generator.map_err(TrainError::part)?;
+        if config.steps.matching > 0 {
+            let (weights, biases) = head::fit(&data)?;
+            let head = &mut generator.fabric;
+            head.weight = Param::from_data(TensorData::new(weights, [DESCRIPTION, FABRIC]), &device);
+            head.bias = Some(Param::from_data(TensorData::new(biases, [FABRIC]), &device));
+        }
         Ok(Trainer {
             config: config.clone(),
             data,
             renderer,
             device,
-            generator: generator.map_err(TrainError::part)?,
+            generator,
             discriminator: discriminator.map_err(TrainError::part)?,
             generator_optimizer: clipped.init(),
             discriminator_optimizer: adam.init(),
@@ -128,13 +138,20 @@ impl Trainer {
     /// Step size of the next step: constant in the first stage; then halved every few epochs from its end on.
     pub fn rate(&self) -> f64 {
         if self.stage() == Stage::Matching {
-            // down to a tenth over the stage, so that the next one starts calm
+            // down over the stage, so that the next one starts calm
             let share = self.step as f64 / self.config.steps.matching.max(1) as f64;
-            return self.config.matching_rate * 0.1f64.powf(share);
+            return self.config.matching_rate * self.config.matching_end.powf(share);
         }
         let pictures = (self.step - self.config.steps.matching) * self.config.batch;
         let halvings = pictures / (self.config.epoch_pictures * self.config.halve_every_epochs);
         self.config.learning_rate * 0.5f64.powi(halvings as i32)
+    }
+
+    /// Weight of the smoothness: grows over the first stage. In full from the start it would be all that the net learns,
+    /// since Adam scales its steps by the gradients of the last thousand.
+    fn smoothness(&self) -> f64 {
+        let share = self.step as f64 / self.config.steps.matching.max(1) as f64;
+        self.config.smoothness * share.min(1.0)
     }
 
     /// One step.
@@ -201,11 +218,21 @@ impl Trainer {
         let items = drawn.iter().zip(scenes).map(|((f, w), pins)| (f, w.as_str(), pins));
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
         let out = self.generator.forward(batch.words, batch.noise, batch.pins);
-        let field = (out.field - batch.field).square().mean();
-        let fabric = (out.fabric - batch.fabric).square().mean();
-        let loss = field.clone() + fabric.clone();
-        self.update_generator(&loss);
-        Ok(Losses { generator: scalar(&loss), field: scalar(&field), fabric: scalar(&fabric), ..Losses::default() })
+        let told = self.told(out, &batch.field, &batch.fabric);
+        self.update_generator(&told.loss);
+        Ok(Losses { generator: scalar(&told.loss), ..told.losses() })
+    }
+
+    /// How far what the net tells is from what the words mean: the loss of the first stage, the prior of the others.
+    fn told(&self, out: GeneratorOutput, field: &Tensor<4>, fabric: &Tensor<2>) -> Told {
+        let slopes = self.data.codings().0.map(|c| c.line().1 as f32);
+        let slopes = Tensor::<4>::from_data(TensorData::new(slopes.to_vec(), [1, CHANNELS, 1, 1]), &self.device);
+        let off = out.field - field.clone();
+        let roughness = roughness(off.clone() * slopes);
+        let field = off.square().mean();
+        let fabric = (out.fabric - fabric.clone()).square().mean();
+        let loss = field.clone() + fabric.clone() + roughness.clone() * self.smoothness();
+        Told { field, fabric, roughness, loss }
     }
 
     /// Examples of this step, the cloth of each at one of the substeps, and the noise's numbers.
@@ -252,19 +279,16 @@ impl Trainer {
         let reference = self.references(&chosen, &self.device);
         let position = (x.clone() - reference.clone()).square().sum_dim(2).mean();
         let stretch = (strains(x, g) - strains(reference, g)).square().mean();
-        let field = (out.field - batch.field).square().mean();
-        let fabric = (out.fabric - batch.fabric).square().mean();
+        let told = self.told(out, &batch.field, &batch.fabric);
         let loss = position.clone() * self.config.position_weight
             + stretch.clone() * self.config.stretch_weight
-            + (field.clone() + fabric.clone()) * self.config.prior;
+            + told.loss.clone() * self.config.prior;
         self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
-            field: scalar(&field),
-            fabric: scalar(&fabric),
             position_mm2: 1e6 * scalar(&position),
             stretch_pct: 100.0 * scalar(&stretch).sqrt(),
-            ..Losses::default()
+            ..told.losses()
         })
     }
 
@@ -302,22 +326,19 @@ impl Trainer {
         let samples = self.data.training.len();
         let weights = weight_penalty(self.generator.squared_weights(), self.config.phi, samples);
         let picture = (fake - plain).square().mean();
-        let field = (out.field - batch.field).square().mean();
-        let fabric = (out.fabric - batch.fabric).square().mean();
+        let told = self.told(out, &batch.field, &batch.fabric);
         let loss = adversarial.clone() * self.config.alpha
             + weights.clone() * self.config.beta
             + picture.clone() * self.config.paired
-            + (field.clone() + fabric.clone()) * self.config.prior;
+            + told.loss.clone() * self.config.prior;
         self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
             discriminator: scalar(&judged),
             adversarial: scalar(&adversarial),
             weights: scalar(&weights),
-            field: scalar(&field),
-            fabric: scalar(&fabric),
             picture: scalar(&picture),
-            ..Losses::default()
+            ..told.losses()
         })
     }
 
@@ -395,6 +416,29 @@ impl Trainer {
     }
 }
 
+/// What the net tells against what the words mean.
+struct Told {
+    /// Field, in tanh's range.
+    field: Tensor<1>,
+    /// Fabric numbers, in tanh's range.
+    fabric: Tensor<1>,
+    /// See [`Losses::roughness`].
+    roughness: Tensor<1>,
+    /// Their weighted sum.
+    loss: Tensor<1>,
+}
+
+impl Told {
+    fn losses(&self) -> Losses {
+        Losses {
+            field: scalar(&self.field),
+            fabric: scalar(&self.fabric),
+            roughness: scalar(&self.roughness),
+            ..Losses::default()
+        }
+    }
+}
+
 fn scalar(t: &Tensor<1>) -> f64 {
     f64::from(t.clone().into_scalar::<f32>())
 }
@@ -404,13 +448,18 @@ fn pins_of(e: &Example) -> Vec<usize> {
     e.scene.pins(GRID)
 }
 
-/// A few pins somewhere, or none, for the first stage: what the words mean does not depend on them.
+/// A few pins somewhere, none, or a whole row, for the first stage: what the words mean does not depend on them.
 fn random_pins(bits: u64) -> Vec<usize> {
-    (0..bits % 4).map(|i| (noise::bits(bits, i as u32) % (GRID * GRID) as u64) as usize).collect()
+    if bits % 5 == 4 {
+        let row = (noise::bits(bits, 0) % GRID as u64) as usize;
+        return (row * GRID..(row + 1) * GRID).collect();
+    }
+    (0..bits % 5).map(|i| (noise::bits(bits, i as u32) % (GRID * GRID) as u64) as usize).collect()
 }
 
-/// Distance to the nearest pin over the side, clipped to 1, [32][32].
-fn pin_map(pins: &[usize]) -> Vec<f32> {
+/// Distance to the nearest pin over the side, clipped to 1, [32][32]; 1 where nothing is pinned. `pins` are particles of the
+/// 32 x 32 grid of a square sheet. The runtime computes the same for every grid and sheet (a test compares the two).
+pub fn pin_map(pins: &[usize]) -> Vec<f32> {
     let last = (GRID - 1) as f32;
     (0..GRID * GRID)
         .map(|i| {
@@ -436,6 +485,14 @@ fn resampling(g: usize) -> Vec<f32> {
     m
 }
 
+/// Mean square of the differences between neighbours of fields [batch, channels, rows, columns], along both sides.
+fn roughness(x: Tensor<4>) -> Tensor<1> {
+    let [b, c, m, n] = x.dims();
+    let down = x.clone().slice([0..b, 0..c, 1..m, 0..n]) - x.clone().slice([0..b, 0..c, 0..m - 1, 0..n]);
+    let right = x.clone().slice([0..b, 0..c, 0..m, 1..n]) - x.slice([0..b, 0..c, 0..m, 0..n - 1]);
+    (down.square().mean() + right.square().mean()) * 0.5
+}
+
 /// Strains of the structural springs along u, then along v, of positions [batch, g * g, 3]: [batch, 2 g (g - 1)].
 fn strains(x: Tensor<3>, g: usize) -> Tensor<2> {
     let [b, _, _] = x.dims();
@@ -448,4 +505,38 @@ fn strains(x: Tensor<3>, g: usize) -> Tensor<2> {
     let along_u = strain(x.clone().slice([0..b, 0..g, 1..g, 0..3]), x.clone().slice([0..b, 0..g, 0..g - 1, 0..3]));
     let along_v = strain(x.clone().slice([0..b, 1..g, 0..g, 0..3]), x.slice([0..b, 0..g - 1, 0..g, 0..3]));
     Tensor::cat(vec![along_u, along_v], 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pins_of_the_first_stage_are_none_some_or_a_row() {
+        let drawn: Vec<Vec<usize>> = (0..50).map(|i| random_pins(noise::bits(3, i))).collect();
+        assert!(drawn.iter().flatten().all(|p| *p < GRID * GRID));
+        for n in [0, 1, 2, 3, GRID] {
+            assert!(drawn.iter().any(|pins| pins.len() == n), "{n}");
+        }
+    }
+
+    #[test]
+    fn roughness_is_the_mean_square_of_steps() {
+        // one step of 2 between the columns of 2 x 2, none between the rows
+        let x = Tensor::<4>::from_data(TensorData::new(vec![1.0f32, 3.0, 1.0, 3.0], [1, 1, 2, 2]), &Device::flex());
+        assert_eq!(scalar(&roughness(x.clone())), 2.0);
+        assert_eq!(scalar(&roughness(x * 0.0 + 7.0)), 0.0);
+    }
+
+    #[test]
+    fn resampling_keeps_planes_and_ends() {
+        for g in [2, 16, 32, 50] {
+            let m = resampling(g);
+            for (i, row) in m.chunks_exact(GRID).enumerate() {
+                let at: f32 = row.iter().enumerate().map(|(j, w)| j as f32 * w).sum();
+                let expected = i as f32 * (GRID - 1) as f32 / (g - 1) as f32;
+                assert!((at - expected).abs() < 1e-4 && (row.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{g} {i}");
+            }
+        }
+    }
 }

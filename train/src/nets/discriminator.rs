@@ -21,7 +21,7 @@ use burn::tensor::activation::{leaky_relu, sigmoid};
 use serde::{Deserialize, Serialize};
 
 use super::init::LayerBuilder;
-use super::{DESCRIPTION, MAX_WIDTH, NetError};
+use super::{DESCRIPTION, MAX_WIDTH, NetError, normalise};
 
 /// Slope of LeakyReLU for negative numbers; the paper gives none, 0.2 is DCGAN's.
 const LEAK: f64 = 0.2;
@@ -137,7 +137,7 @@ impl Discriminator {
         let features = match &self.condition {
             None => features,
             Some(c) => {
-                let told = c.projection.forward(descriptions);
+                let told = c.projection.forward(normalise(descriptions));
                 leaky_relu(c.hidden.forward(Tensor::cat(vec![features, told], 1)), LEAK)
             }
         };

@@ -21,8 +21,11 @@
 //! `pins`, the distance to the nearest pin, joins behind the normalisation: it is in [0, 1] already, and the statistics
 //! of one scene must not shift what another scene shows.
 //!
+//! The description is scaled to one length first ([`super::description`]): one word says as much as three.
+//!
 //! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
-//! whole. Noise does not reach it: another seed is another piece of the same fabric.
+//! whole; it takes the sum of the words as it is, for the logarithms of their factors add up. Noise does not reach it:
+//! another seed is another piece of the same fabric.
 
 use burn::Tensor;
 use burn::module::Module;
@@ -33,7 +36,7 @@ use burn::tensor::activation::{relu, tanh};
 use serde::{Deserialize, Serialize};
 
 use super::init::LayerBuilder;
-use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError};
+use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError, normalise};
 
 /// What a generator is built from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,9 +53,6 @@ impl Default for GeneratorConfig {
 
 impl GeneratorConfig {
     /// A generator with first weights from `seed`; on an autodiff device it is ready to train.
-    ///
-    /// The description vectors should have entries of about unit size, like the noise: 1024 entries of 1/32 (vectors of
-    /// unit length) would be ten times quieter than the noise in the first layer.
     ///
     /// # Errors
     /// [`NetError::Width`].
@@ -130,12 +130,12 @@ pub struct GeneratorOutput {
 }
 
 impl Generator {
-    /// Runs the network: description [batch, 1024], noise [batch, 128], distance to the nearest pin
+    /// Runs the network: description [batch, 1024] (the sum of the word vectors), noise [batch, 128], distance to the nearest pin
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
     pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
         let fabric = tanh(self.fabric.forward(description.clone()));
-        let v = Tensor::cat(vec![description, noise], 1);
+        let v = Tensor::cat(vec![normalise(description), noise], 1);
         let [batch, n] = v.dims();
         let a1 = relu(self.first.forward(v.reshape([batch, n, 1, 1])));
         let skip = self.skip.forward(a1.clone());

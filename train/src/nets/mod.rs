@@ -4,16 +4,18 @@
 //! running statistics. Their first weights come from a seed through a counter-free stream of our own, not from the
 //! global generator of the backend, so that two threads that build networks at once cannot disturb each other.
 
+pub mod description;
 pub mod discriminator;
 pub mod error;
 pub mod generator;
 pub mod init;
 
+pub use description::{DESCRIPTION_EPSILON, SHARES_EPSILON, normalise};
 pub use discriminator::{Discriminator, DiscriminatorConfig};
 pub use error::NetError;
 pub use generator::{Generator, GeneratorConfig, GeneratorOutput};
 
-/// Length of the description vector: the mean of the word vectors (paper, section V.A.1).
+/// Length of the description vector: the sum of the word vectors, of which the paper takes the mean (section V.A.1).
 pub const DESCRIPTION: usize = 1024;
 /// Length of the Gaussian noise vector (paper, section V.A.1).
 pub const NOISE: usize = 128;
