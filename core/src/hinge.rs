@@ -143,7 +143,7 @@ const fn around(i: isize, j: isize) -> usize {
 
 /// The rows of a plane around `n` particles, as slices of `n` numbers each; none where the plane ends before.
 #[inline(always)]
-fn rows<'a>(plane: &'a [f32], at: usize, stride: usize, n: usize) -> Option<[&'a [f32]; 13]> {
+fn rows(plane: &[f32], at: usize, stride: usize, n: usize) -> Option<[&[f32]; 13]> {
     let all = AROUND.map(|(i, j)| span(plane, at.wrapping_add_signed(i * stride as isize + j), n));
     all.iter().all(|s| s.len() == n).then_some(all)
 }

@@ -1,6 +1,7 @@
 //! The contract "never more than eps", measured: the largest structural strain over every frame of each scene, what is left
 //! at rest, how fast it still moves, and what it costs. `cargo run -p taut-lab --example contract`
 
+use std::f32::consts::FRAC_1_SQRT_2;
 use std::f64::consts::TAU;
 
 use cpu_time::ThreadTime;
@@ -44,7 +45,7 @@ fn measure(scene: &str, def: &ClothDef, k: [f32; 4]) -> Result<(), taut::Error> 
             let (u, v) = ((i % SIDE) as f32 / 31.0, (i / SIDE) as f32 / 31.0);
             let bump =
                 (9.4 * u).sin() + 0.6 * (15.7 * u + 1.0).cos() + 0.4 * (6.3 * u + 3.0 * v).sin() + (3.1 * u).sin();
-            let [x, y] = if scene == "hang1" { [0.7071 * (u - v), -0.7071 * (u + v)] } else { [u, -v] };
+            let [x, y] = if scene == "hang1" { [(u - v) * FRAC_1_SQRT_2, -(u + v) * FRAC_1_SQRT_2] } else { [u, -v] };
             cloth.set_position(i, Vector3::new(x, y, 0.004 * v * bump))?;
         }
     }
