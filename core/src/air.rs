@@ -19,12 +19,12 @@
 
 use crate::ambient::AIR_AT;
 use crate::force::View;
-use crate::layout::{Layout, span};
+use crate::layout::{block, block_mut, span};
 use crate::math::{max, min, sqrt};
 use crate::{Cloth, Error, noise};
 
-/// Cells that are worked on at a time.
-const BLOCK: usize = 64;
+/// Cells of a row that are worked on at a time.
+const LANES: usize = 16;
 
 /// Largest and smallest share of its relative velocity that a substep may take from a cell.
 const MOST: f32 = 0.25;
@@ -197,17 +197,21 @@ impl Cloth<'_> {
         };
         let (x, v) = (self.x.view(), self.v.view());
         for row in 1..l.rows {
-            for first in (0..l.columns).step_by(BLOCK) {
-                // a cell is left out by its far corner; the block ends there
-                let count = BLOCK.min(l.columns - 1 - first);
-                let at = l.row(row - 1) + first;
-                let mut forces = Cells::new(at, l.stride, count, x, v, self.inverse).forces(&flow);
-                leave_out_absent(&mut forces, self.mask, at, l.stride, count);
-                scatter(&mut self.force, &forces, at, &l, count);
+            // a row has one cell less than particles
+            for first in (0..l.columns.saturating_sub(1)).step_by(LANES) {
+                let at = l.at(row - 1, first);
+                // the planes go on beyond the border by more than a block
+                if let Some(mut forces) = flow.cells(at, l.stride, x, v, self.inverse) {
+                    drop_absent(&mut forces, self.mask, at, l.stride, l.columns - 1 - first);
+                    add_quarters(&mut self.force, &forces, at, l.stride);
+                }
             }
         }
     }
 }
+
+/// Forces on neighbouring cells of a row along each axis in N.
+type Forces = [[f32; LANES]; 3];
 
 /// The air of one substep.
 struct Flow {
@@ -220,64 +224,33 @@ struct Flow {
     limit: f32,
 }
 
-/// Four corners of some neighbouring cells in one plane: upper left, upper right, lower left, lower right.
-type Corners<'a> = [&'a [f32]; 4];
-
-/// Neighbouring cells of a row. Each slice has `count` numbers.
-struct Cells<'a> {
-    count: usize,
-    x: [Corners<'a>; 3],
-    v: [Corners<'a>; 3],
-    inverse: Corners<'a>,
-}
-
-impl<'a> Cells<'a> {
-    /// `count` cells from the one whose upper left corner is at a place.
-    fn new(at: usize, stride: usize, count: usize, x: View<'a>, v: View<'a>, inverse: &'a [f32]) -> Cells<'a> {
-        let corners = |plane: &'a [f32]| [0, 1, stride, stride + 1].map(|by| span(plane, at + by, count));
-        Cells {
-            count,
-            x: [corners(x.x), corners(x.y), corners(x.z)],
-            v: [corners(v.x), corners(v.y), corners(v.z)],
-            inverse: corners(inverse),
-        }
-    }
-
-    /// The forces on the cells in N, at most [`BLOCK`] of them.
+impl Flow {
+    /// The forces on the cells from the one whose upper left corner is at a place; none where a plane ends before.
     #[inline(never)]
-    fn forces(&self, c: &Flow) -> [[f32; BLOCK]; 3] {
-        let mut out = [[0.0; BLOCK]; 3];
-        let [ox, oy, oz] = &mut out;
-        let n = self.count.min(BLOCK);
-        // every slice anew with n numbers, so that the compiler sees that no index of the loop is out of range
-        let cut = |s: Corners<'a>| s.map(|s| s.get(..n).unwrap_or(&[]));
-        let [[x0, x1, x2, x3], [y0, y1, y2, y3], [z0, z1, z2, z3]] = self.x.map(cut);
-        let [[u0, u1, u2, u3], [v0, v1, v2, v3], [w0, w1, w2, w3]] = self.v.map(cut);
-        let [m0, m1, m2, m3] = cut(self.inverse);
-        let all = [
-            x0, x1, x2, x3, y0, y1, y2, y3, z0, z1, z2, z3, u0, u1, u2, u3, v0, v1, v2, v3, w0, w1, w2, w3, m0, m1, m2,
-            m3,
-        ];
-        if all.iter().any(|s| s.len() != n) {
-            return out;
-        }
-        for i in 0..n {
+    fn cells(&self, at: usize, stride: usize, x: View<'_>, v: View<'_>, inverse: &[f32]) -> Option<Forces> {
+        let upper = |plane| block::<{ LANES + 1 }>(plane, at);
+        let lower = |plane| block::<{ LANES + 1 }>(plane, at + stride);
+        let (x0, y0, z0, x1, y1, z1) = (upper(x.x)?, upper(x.y)?, upper(x.z)?, lower(x.x)?, lower(x.y)?, lower(x.z)?);
+        let (u0, v0, w0, u1, v1, w1) = (upper(v.x)?, upper(v.y)?, upper(v.z)?, lower(v.x)?, lower(v.y)?, lower(v.z)?);
+        let (m0, m1) = (upper(inverse)?, lower(inverse)?);
+        let [mut ox, mut oy, mut oz] = [[0.0; LANES]; 3];
+        for i in 0..LANES {
             // the diagonals
-            let (ax, ay, az) = (x3[i] - x0[i], y3[i] - y0[i], z3[i] - z0[i]);
-            let (bx, by, bz) = (x2[i] - x1[i], y2[i] - y1[i], z2[i] - z1[i]);
+            let (ax, ay, az) = (x1[i + 1] - x0[i], y1[i + 1] - y0[i], z1[i + 1] - z0[i]);
+            let (bx, by, bz) = (x1[i] - x0[i + 1], y1[i] - y0[i + 1], z1[i] - z0[i + 1]);
             let nx = 0.5 * (ay * bz - az * by);
             let ny = 0.5 * (az * bx - ax * bz);
             let nz = 0.5 * (ax * by - ay * bx);
-            let vx = 0.25 * ((u0[i] + u1[i]) + (u2[i] + u3[i])) - c.wind[0];
-            let vy = 0.25 * ((v0[i] + v1[i]) + (v2[i] + v3[i])) - c.wind[1];
-            let vz = 0.25 * ((w0[i] + w1[i]) + (w2[i] + w3[i])) - c.wind[2];
+            let vx = 0.25 * ((u0[i] + u0[i + 1]) + (u1[i] + u1[i + 1])) - self.wind[0];
+            let vy = 0.25 * ((v0[i] + v0[i + 1]) + (v1[i] + v1[i + 1])) - self.wind[1];
+            let vz = 0.25 * ((w0[i] + w0[i + 1]) + (w1[i] + w1[i + 1])) - self.wind[2];
             let across = nx * vx + ny * vy + nz * vz;
             let (area2, speed2) = (nx * nx + ny * ny + nz * nz, vx * vx + vy * vy + vz * vz);
-            let inverse = 0.25 * ((m0[i] + m1[i]) + (m2[i] + m3[i]));
-            let rate = c.half_density * across.abs();
-            let limit = c.limit / max(inverse, HELD);
-            let lift = min(c.lift * rate, limit);
-            let drag = min(max(c.drag * rate, lift * lift * (c.dt * inverse)), limit);
+            let inverse = 0.25 * ((m0[i] + m0[i + 1]) + (m1[i] + m1[i + 1]));
+            let rate = self.half_density * across.abs();
+            let limit = self.limit / max(inverse, HELD);
+            let lift = min(self.lift * rate, limit);
+            let drag = min(max(self.drag * rate, lift * lift * (self.dt * inverse)), limit);
             // 1 / (A |v|)
             let scale = 1.0 / sqrt(max(area2 * speed2, TINY));
             let along = drag - lift * (scale * across.abs());
@@ -287,18 +260,23 @@ impl<'a> Cells<'a> {
             oy[i] = -(along * vy + normal * ny);
             oz[i] = -(along * vz + normal * nz);
         }
-        out
+        Some([ox, oy, oz])
     }
 }
 
-/// A cell without one of its corners is no cell.
-fn leave_out_absent(forces: &mut [[f32; BLOCK]; 3], mask: &[f32], at: usize, stride: usize, count: usize) {
+/// There are so many cells, and one that lacks a corner is none.
+fn drop_absent(forces: &mut Forces, mask: &[f32], at: usize, stride: usize, cells: usize) {
+    if cells < LANES {
+        for plane in &mut *forces {
+            plane.iter_mut().skip(cells).for_each(|f| *f = 0.0);
+        }
+    }
     if mask.is_empty() {
         return;
     }
     for by in [0, 1, stride, stride + 1] {
         for plane in &mut *forces {
-            for (f, present) in plane.iter_mut().zip(span(mask, at + by, count)) {
+            for (f, present) in plane.iter_mut().zip(span(mask, at + by, LANES)) {
                 *f *= present;
             }
         }
@@ -306,12 +284,22 @@ fn leave_out_absent(forces: &mut [[f32; BLOCK]; 3], mask: &[f32], at: usize, str
 }
 
 /// A quarter of each cell's force to each of its corners.
-fn scatter(to: &mut [&mut [f32]; 3], forces: &[[f32; BLOCK]; 3], at: usize, l: &Layout, count: usize) {
-    for by in [0, 1, l.stride, l.stride + 1] {
-        for (plane, forces) in to.iter_mut().zip(forces) {
-            let row = plane.get_mut(at + by..).unwrap_or(&mut []);
-            for (to, f) in row.iter_mut().zip(forces).take(count) {
-                *to += 0.25 * f;
+fn add_quarters(to: &mut [&mut [f32]; 3], forces: &Forces, at: usize, stride: usize) {
+    for (plane, forces) in to.iter_mut().zip(forces) {
+        let quarters = forces.map(|f| 0.25 * f);
+        // of the cell on the left of a particle and that on its right
+        let mut sums = [0.0; LANES + 1];
+        for (sum, f) in sums.iter_mut().skip(1).zip(&quarters) {
+            *sum = *f;
+        }
+        for (sum, f) in sums.iter_mut().zip(&quarters) {
+            *sum += f;
+        }
+        for row in [at, at + stride] {
+            if let Some(to) = block_mut::<{ LANES + 1 }>(plane, row) {
+                for (to, sum) in to.iter_mut().zip(&sums) {
+                    *to += sum;
+                }
             }
         }
     }
@@ -363,7 +351,7 @@ mod tests {
             assert!((f - cells * cell).abs() < 1e-3 * cell, "{i}: {f}");
         }
         // one next to where core's blocks of cells meet
-        for (row, column) in [(2, 64), (1, 5)] {
+        for (row, column) in [(2, 64), (1, 16), (1, 5)] {
             let holed = forces(Some((row, column)));
             for (i, (f, before)) in holed.iter().zip(&whole).enumerate() {
                 let (down, right) = (row.abs_diff(i / 70), column.abs_diff(i % 70));

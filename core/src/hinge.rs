@@ -19,8 +19,11 @@
 //! Stability: (a - 2 b + c)^2 <= 4 (a^2 + 2 b^2 + c^2) and (a - b - c + d)^2 <= 4 (a^2 + b^2 + c^2 + d^2), so the hinges add
 //! at most 16 (u + v + twist) to what the springs put on a particle, in any shape and with any pins.
 
-use crate::layout::{Layout, read, span};
+use crate::layout::{Layout, block, block_mut};
 use crate::{Cloth, ClothDef, Grid};
+
+/// Particles of a row that are worked on at a time. Beyond the border the weights are 0.
+const LANES: usize = 16;
 
 /// Factors of the terms in N/m. In f64, where those of the smallest cells are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,12 +67,22 @@ impl Cloth<'_> {
             return;
         }
         let planes = [&*self.x.x, &*self.x.y, &*self.x.z];
-        for row in 0..l.rows {
-            for (x, force) in planes.into_iter().zip(&mut self.force) {
-                if l.mask {
-                    masked_row(&l, row, &k, x, self.mask, force);
-                } else {
-                    full_row(&l, row, &k, x, force);
+        for first in (0..l.columns).step_by(LANES) {
+            let columns = Columns::new(&l, first, &k);
+            for row in 0..l.rows {
+                let (at, rows) = (l.at(row, first), Rows::new(&l, row, &k));
+                for (x, force) in planes.into_iter().zip(&mut self.force) {
+                    // the planes have room for whole blocks
+                    let (Some(x), Some(to)) = (Around::new(x, at, l.stride), block_mut::<LANES>(force, at)) else {
+                        continue;
+                    };
+                    let forces = match Around::new(self.mask, at, l.stride) {
+                        Some(mask) => masked(&x, &mask, &k),
+                        None => full(&x, &rows, &columns),
+                    };
+                    for (to, f) in to.iter_mut().zip(&forces) {
+                        *to += f;
+                    }
                 }
             }
         }
@@ -125,27 +138,37 @@ impl Weights {
     }
 }
 
-/// The places around a particle that its terms reach, as (rows, columns) from it.
-const AROUND: [(isize, isize); 13] =
-    [(-2, 0), (-1, -1), (-1, 0), (-1, 1), (0, -2), (0, -1), (0, 0), (0, 1), (0, 2), (1, -1), (1, 0), (1, 1), (2, 0)];
-
-/// Where a place is in [`AROUND`].
-#[inline(always)]
-const fn around(i: isize, j: isize) -> usize {
-    (match i {
-        -2 => 0,
-        -1 => 2 + j,
-        0 => 6 + j,
-        1 => 10 + j,
-        _ => 12,
-    }) as usize
+/// The numbers of a plane at [`LANES`] particles of a row and at what their terms reach.
+struct Around<'a> {
+    here: &'a [f32; LANES + 4],
+    above: [&'a [f32; LANES + 2]; 2],
+    far: [&'a [f32; LANES]; 2],
 }
 
-/// The rows of a plane around `n` particles, as slices of `n` numbers each; none where the plane ends before.
-#[inline(always)]
-fn rows(plane: &[f32], at: usize, stride: usize, n: usize) -> Option<[&[f32]; 13]> {
-    let all = AROUND.map(|(i, j)| span(plane, at.wrapping_add_signed(i * stride as isize + j), n));
-    all.iter().all(|s| s.len() == n).then_some(all)
+impl<'a> Around<'a> {
+    /// None where the plane ends before.
+    #[inline(always)]
+    fn new(plane: &'a [f32], at: usize, stride: usize) -> Option<Around<'a>> {
+        Some(Around {
+            here: block(plane, at.wrapping_sub(2))?,
+            above: [block(plane, at.wrapping_sub(stride + 1))?, block(plane, at.wrapping_add(stride - 1))?],
+            far: [block(plane, at.wrapping_sub(2 * stride))?, block(plane, at.wrapping_add(2 * stride))?],
+        })
+    }
+
+    /// The number so many rows and columns from a particle.
+    #[inline(always)]
+    fn at(&self, particle: usize, i: isize, j: isize) -> f32 {
+        let [up, down] = self.above;
+        let [far_up, far_down] = self.far;
+        match i {
+            -2 => far_up[particle],
+            -1 => up[particle.wrapping_add_signed(j + 1)],
+            0 => self.here[particle.wrapping_add_signed(j + 2)],
+            1 => down[particle.wrapping_add_signed(j + 1)],
+            _ => far_down[particle],
+        }
+    }
 }
 
 /// 1 for a row or column of the grid, else 0.
@@ -154,41 +177,73 @@ fn inside(at: usize, by: isize, count: usize) -> f32 {
     if at.wrapping_add_signed(by) < count { 1.0 } else { 0.0 }
 }
 
-/// One row of a grid with all of its particles.
-#[inline(never)]
-fn full_row(l: &Layout, row: usize, k: &Factors, x: &[f32], force: &mut [f32]) {
-    let at = l.row(row);
-    let border = l.columns.min(2);
-    let n = l.columns.saturating_sub(4);
-    for column in (0..border).chain(border.max(l.columns - border)..l.columns) {
-        let weights = Weights::new(k, |i, j| inside(row, i, l.rows) * inside(column, j, l.columns));
-        let place = at + column;
-        if let Some(to) = force.get_mut(place) {
-            *to += weights.force(|i, j| read(x, place.wrapping_add_signed(i * l.stride as isize + j)));
+/// What the weights of a full grid owe to the column: the factors of the lines along u, and whether there is a cell to the
+/// right and to the left.
+struct Columns {
+    u: [[f32; LANES]; 3],
+    right: [f32; LANES],
+    left: [f32; LANES],
+}
+
+impl Columns {
+    fn new(l: &Layout, first: usize, k: &Factors) -> Columns {
+        let mut all = Columns { u: [[0.0; LANES]; 3], right: [0.0; LANES], left: [0.0; LANES] };
+        for c in 0..LANES {
+            let p = |j: isize| inside(first + c, j, l.columns);
+            for (u, j) in all.u.iter_mut().zip(-1..) {
+                u[c] = k.u * (p(j - 1) * p(j) * p(j + 1) * p(0));
+            }
+            all.right[c] = p(0) * p(1);
+            all.left[c] = p(-1) * p(0);
         }
-    }
-    let (Some(rows), Some(to)) = (rows(x, at + 2, l.stride, n), force.get_mut(at + 2..at + 2 + n)) else {
-        return;
-    };
-    let weights = Weights::new(k, |i, _| inside(row, i, l.rows));
-    for c in 0..n {
-        to[c] += weights.force(|i, j| rows[around(i, j)][c]);
+        all
     }
 }
 
-/// One row of a grid some of whose particles are absent. `mask` is 1 for a particle and 0 elsewhere.
-#[inline(never)]
-fn masked_row(l: &Layout, row: usize, k: &Factors, x: &[f32], mask: &[f32], force: &mut [f32]) {
-    let (at, n) = (l.row(row), l.columns);
-    let (Some(rows), Some(present), Some(to)) =
-        (rows(x, at, l.stride, n), rows(mask, at, l.stride, n), force.get_mut(at..at + n))
-    else {
-        return;
-    };
-    for c in 0..n {
-        let weights = Weights::new(k, |i, j| present[around(i, j)][c]);
-        to[c] += weights.force(|i, j| rows[around(i, j)][c]);
+/// What the weights of a full grid owe to the row: the factors of the lines along v and of the cells below and above.
+struct Rows {
+    v: [f32; 3],
+    below: f32,
+    above: f32,
+}
+
+impl Rows {
+    fn new(l: &Layout, row: usize, k: &Factors) -> Rows {
+        let p = |i: isize| inside(row, i, l.rows);
+        let v = |i: isize| k.v * (p(i - 1) * p(i) * p(i + 1));
+        Rows { v: [v(-1), v(0), v(1)], below: k.twist * p(1), above: k.twist * p(-1) }
     }
+
+    #[inline(always)]
+    fn weights(&self, columns: &Columns, c: usize) -> Weights {
+        let [u0, u1, u2] = &columns.u;
+        let (right, left) = (columns.right[c], columns.left[c]);
+        Weights {
+            u: [u0[c], u1[c], u2[c]],
+            v: self.v,
+            twist: [self.below * right, self.below * left, self.above * right, self.above * left],
+        }
+    }
+}
+
+/// The forces on the particles of a block of a full grid.
+#[inline(never)]
+fn full(x: &Around<'_>, rows: &Rows, columns: &Columns) -> [f32; LANES] {
+    let mut forces = [0.0; LANES];
+    for c in 0..LANES {
+        forces[c] = rows.weights(columns, c).force(|i, j| x.at(c, i, j));
+    }
+    forces
+}
+
+/// The same where some particles are absent. `mask` is 1 for a particle and 0 elsewhere.
+#[inline(never)]
+fn masked(x: &Around<'_>, mask: &Around<'_>, k: &Factors) -> [f32; LANES] {
+    let mut forces = [0.0; LANES];
+    for c in 0..LANES {
+        forces[c] = Weights::new(k, |i, j| mask.at(c, i, j)).force(|i, j| x.at(c, i, j));
+    }
+    forces
 }
 
 #[cfg(test)]
@@ -219,24 +274,32 @@ mod tests {
         plane
     }
 
+    /// The forces on all particles, by the mask or as a full grid.
+    fn forces(l: &Layout, x: &[f32], mask: Option<&[f32]>) -> Vec<f32> {
+        let mut force = vec![0.0; l.plane];
+        for first in (0..l.columns).step_by(LANES) {
+            for row in 0..l.rows {
+                let at = l.at(row, first);
+                let (x, to) = (Around::new(x, at, l.stride).unwrap(), block_mut::<LANES>(&mut force, at).unwrap());
+                *to = match mask {
+                    Some(mask) => masked(&x, &Around::new(mask, at, l.stride).unwrap(), &K),
+                    None => full(&x, &Rows::new(l, row, &K), &Columns::new(l, first, &K)),
+                };
+            }
+        }
+        force
+    }
+
     /// A grid of which only a block is present bends as a grid of that size: no term reaches an absent particle, wherever it is.
     #[test]
     fn a_masked_block_is_a_smaller_grid() {
         let large = layout(12, 37);
         let somewhere = |i: u32| noise::gaussian(1, i);
         for (rows, columns) in [(2, 2), (3, 5), (5, 3), (9, 20), (12, 37)] {
-            let x = plane(&large, 12, 37, somewhere);
             let mask = plane(&large, rows, columns, |_| 1.0);
-            let mut found = vec![0.0; large.plane];
-            for row in 0..12 {
-                masked_row(&large, row, &K, &x, &mask, &mut found);
-            }
+            let found = forces(&large, &plane(&large, 12, 37, somewhere), Some(&mask));
             let small = layout(rows as u32, columns as u32);
-            let x = plane(&small, rows, columns, somewhere);
-            let mut expected = vec![0.0; small.plane];
-            for row in 0..rows {
-                full_row(&small, row, &K, &x, &mut expected);
-            }
+            let expected = forces(&small, &plane(&small, rows, columns, somewhere), None);
             for row in 0..12 {
                 for column in 0..37 {
                     let inside = row < rows && column < columns;
@@ -251,24 +314,15 @@ mod tests {
     #[test]
     fn a_hole_is_left_alone() {
         let l = layout(9, 11);
-        let x = plane(&l, 9, 11, |i| noise::gaussian(2, i));
+        let mut x = plane(&l, 9, 11, |i| noise::gaussian(2, i));
         let mut mask = plane(&l, 9, 11, |_| 1.0);
         mask[l.at(4, 5)] = 0.0;
-        let mut forces = vec![0.0; l.plane];
-        for row in 0..9 {
-            masked_row(&l, row, &K, &x, &mask, &mut forces);
-        }
-        assert_eq!(forces[l.at(4, 5)], 0.0);
-        let (sum, size) = forces.iter().fold((0.0, 0.0), |(s, a), f| (s + f, a + f.abs()));
+        let before = forces(&l, &x, Some(&mask));
+        assert_eq!(before[l.at(4, 5)], 0.0);
+        let (sum, size) = before.iter().fold((0.0, 0.0), |(s, a), f| (s + f, a + f.abs()));
         assert!(sum.abs() < 1e-5 * size, "{sum} of {size}");
         // what the particle does is not felt
-        let before = forces.clone();
-        let mut moved = x.clone();
-        moved[l.at(4, 5)] = 100.0;
-        forces.fill(0.0);
-        for row in 0..9 {
-            masked_row(&l, row, &K, &moved, &mask, &mut forces);
-        }
-        assert_eq!(forces, before);
+        x[l.at(4, 5)] = 100.0;
+        assert_eq!(forces(&l, &x, Some(&mask)), before);
     }
 }

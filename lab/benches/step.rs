@@ -5,9 +5,10 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use taut::{Cloth, ClothDef, Families, Grid, GridDef, Width};
+use taut::{Cloth, ClothDef, Families, Features, Grid, GridDef, Width};
 
 const SIDES: [u32; 3] = [32, 64, 128];
+const NO_BEND: Families = Families(3);
 
 /// Hands a swinging cloth to `work`.
 fn with_cloth(side: u32, families: Families, def: &ClothDef, work: impl FnOnce(&mut Cloth<'_>)) {
@@ -27,11 +28,18 @@ fn frames(c: &mut Criterion) {
     let plain = ClothDef::default();
     let inertia = ClothDef { inertia_radius_m: 0.3, ..plain };
     let unlimited = ClothDef { speed_limit: 0.0, ..plain };
+    let air = ClothDef { features: Features::AIR, ..plain };
+    let hinge = ClothDef { features: Features::HINGE, ..plain };
     let settings = [
         ("uniform", Families::ALL, plain),
         ("inertia", Families::ALL, inertia),
         ("no_speed_limit", Families::ALL, unlimited),
         ("structural_only", Families::STRUCTURAL, plain),
+        ("air", Families::ALL, air),
+        ("hinge", Families::ALL, hinge),
+        // hinges instead of the bend springs of Provot
+        ("no_bend", NO_BEND, plain),
+        ("hinge_no_bend", NO_BEND, hinge),
     ];
     let mut group = c.benchmark_group("frame");
     for (name, families, def) in settings {

@@ -79,7 +79,17 @@ fn structures_and_values_are_those_of_rust() {
     structure!(t, types::Memory, "taut_memory", size, align);
     structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
     structure!(t, types::Bounds, "taut_bounds", low_m, high_m);
-    structure!(t, types::BudgetReport, "taut_budget_report", dt_s, max_dt_s, cut_fraction, inertia_added);
+    structure!(
+        t,
+        types::BudgetReport,
+        "taut_budget_report",
+        dt_s,
+        max_dt_s,
+        cut_fraction,
+        inertia_added,
+        hinge_fraction
+    );
+    structure!(t, types::Air, "taut_air", wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed);
     structure!(
         t,
         types::Fabric,
