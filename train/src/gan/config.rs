@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::TrainError;
+use super::{Stage, TrainError};
 use crate::image::Channel;
 
 /// Steps of each stage.
@@ -19,6 +19,15 @@ impl StageSteps {
     /// All steps.
     pub fn total(&self) -> usize {
         self.matching + self.positions + self.adversarial
+    }
+
+    /// The last stage that has steps.
+    pub fn last(&self) -> Stage {
+        match (self.positions, self.adversarial) {
+            (0, 0) => Stage::Matching,
+            (_, 0) => Stage::Positions,
+            _ => Stage::Adversarial,
+        }
     }
 }
 
@@ -194,5 +203,19 @@ impl TrainConfig {
         let mut h = taut::Hash64::new();
         h.bytes(text.as_bytes());
         Ok(format!("{:016x}", h.finish()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_stage_is_the_last_that_has_steps() {
+        let last = |matching, positions, adversarial| StageSteps { matching, positions, adversarial }.last();
+        assert_eq!(last(0, 0, 3), Stage::Adversarial);
+        assert_eq!(last(5, 4, 3), Stage::Adversarial);
+        assert_eq!(last(5, 4, 0), Stage::Positions);
+        assert_eq!(last(5, 0, 0), Stage::Matching);
     }
 }

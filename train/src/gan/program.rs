@@ -106,8 +106,9 @@ fn train(
             let sheet = out.join(format!("sheet-{:06}.png", trainer.step));
             let score = trainer.evaluate(Some(&sheet))?;
             log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score }))?;
-            // the weights of the first stage have not seen the cloth: they are no candidates where later stages follow
-            let candidate = stage != super::Stage::Matching || trainer.step == total;
+            // where later stages follow, the weights are no candidates: the score sees one drape per fabric on a coarse
+            // grid without noise, and not how smooth a field is
+            let candidate = stage == config.steps.last() || trainer.step == total;
             if candidate && best.is_none_or(|(b, _)| score < b) {
                 *best = Some((score, trainer.step));
                 trainer.save_generator(&out.join("best.bpk"))?;
