@@ -15,6 +15,9 @@ host=x86_64-unknown-linux-gnu
 flags=(-Zsanitizer=address -Cpasses=sancov-module -Ccodegen-units=1
   -Cllvm-args=-sanitizer-coverage-level=4 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters
   -Cllvm-args=-sanitizer-coverage-pc-table -Cllvm-args=-sanitizer-coverage-trace-compares)
+# libFuzzer as Debian ships it (libclang-rt-14-dev); where it is not there the crate compiles its own, in a minute or two
+custom=(/usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-x86_64.a)
+[ ! -f "${custom[0]}" ] || export CUSTOM_LIBFUZZER_PATH=${custom[0]}
 RUSTC_BOOTSTRAP=1 RUSTFLAGS="${flags[*]}" \
   cargo build --release --locked --target "$host" --target-dir "$folder"
 

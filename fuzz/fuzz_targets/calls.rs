@@ -53,7 +53,7 @@ fuzz_target!(|data: &[u8]| {
                 1 => _ = capi::taut_cloth_unpin(cloth, particle(&mut input)),
                 2 => {
                     let (p, to) = (particle(&mut input), [input.f64(), input.f64(), input.f64()]);
-                    capi::taut_cloth_move_pin(cloth, p, to.as_ptr());
+                    capi::taut_cloth_pin_move(cloth, p, to.as_ptr());
                 }
                 3 => {
                     let (p, to) = (particle(&mut input), [input.f32(), input.f32(), input.f32()]);

@@ -6,7 +6,7 @@ use std::ffi::c_void;
 #[path = "../../ffi/src/types.rs"]
 mod types;
 
-pub use types::{BudgetReport, ClothDef, FieldInfo, GridDef, Memory, PositionView, Strain};
+pub use types::{BudgetReport, ClothDef, GridDef, Memory, PositionView, Strain};
 
 /// TAUT_OK.
 pub const OK: i32 = 0;
@@ -37,7 +37,7 @@ unsafe extern "C" {
     pub fn taut_cloth_load_stiffness(cloth: *mut c_void, data: *const c_void, size: usize, out: *mut c_void) -> i32;
     pub fn taut_cloth_budget(cloth: *mut c_void, out: *mut BudgetReport) -> i32;
     pub fn taut_cloth_pin(cloth: *mut c_void, particle: u32) -> i32;
-    pub fn taut_cloth_move_pin(cloth: *mut c_void, particle: u32, world_m: *const f64) -> i32;
+    pub fn taut_cloth_pin_move(cloth: *mut c_void, particle: u32, world_m: *const f64) -> i32;
     pub fn taut_cloth_unpin(cloth: *mut c_void, particle: u32) -> i32;
     pub fn taut_cloth_set_position(cloth: *mut c_void, particle: u32, local_m: *const f32) -> i32;
     pub fn taut_cloth_set_velocity(cloth: *mut c_void, particle: u32, v_m_s: *const f32) -> i32;
