@@ -11,7 +11,7 @@ use crate::library::{Language, library, root, succeed};
 fn build(language: Language, source: &str, options: &[&str], out: &Path) {
     let (compiler, standard) = match language {
         Language::C11 => ("cc", "-std=c11"),
-        Language::Cpp17 => ("c++", "-std=c++17"),
+        Language::Cpp17 | Language::Cpp17Bare => ("c++", "-std=c++17"),
     };
     let mut command = Command::new(compiler);
     command.args([standard, "-g", "-O1", "-I"]).arg(root().join("include")).args(options).arg(root().join(source));

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
-use crate::library::{declared, library, succeed};
+use crate::library::{declared, library, root, succeed};
 
 /// Runs nm on the shared library and returns (kind, name) of each symbol.
 #[cfg(target_os = "linux")]
