@@ -430,6 +430,8 @@ typedef struct {
     float u_axis[3];
     // Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     float v_axis[3];
+    // 0.
+    uint32_t reserved;
 } taut_cloth_def;
 
 // What a baked field tells about its fabric beside the stiffness.

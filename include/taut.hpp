@@ -95,6 +95,11 @@ inline taut_grid_def grid_def_default() noexcept { return taut_grid_def_default(
     return taut_grid_memory(&def, &out);
 }
 
+// The shape is a taut_shape.
+inline taut_collider_def collider_def_default(uint32_t shape) noexcept { return taut_collider_def_default(shape); }
+
+inline taut_air air_default() noexcept { return taut_air_default(); }
+
 class Grid {
 public:
     Grid() noexcept = default;
@@ -191,6 +196,14 @@ public:
         return taut_cloth_set_stiffness_field(handle_, channels, rows, columns, data);
     }
 
+    // out_repaired may be left out.
+    [[nodiscard]] taut_result set_stiffness_field_sanitised(uint32_t channels, uint32_t rows, uint32_t columns,
+                                                            const float *data,
+                                                            uint32_t *out_repaired = nullptr) noexcept
+    {
+        return taut_cloth_set_stiffness_field_sanitised(handle_, channels, rows, columns, data, out_repaired);
+    }
+
     [[nodiscard]] taut_result load_stiffness(const void *data, size_t size, taut_fabric *out_fabric = nullptr) noexcept
     {
         return taut_cloth_load_stiffness(handle_, data, size, out_fabric);
@@ -198,7 +211,56 @@ public:
 
     [[nodiscard]] taut_result budget(taut_budget_report &out) noexcept { return taut_cloth_budget(handle_, &out); }
 
-    // Pins and particles. A vector can be written as {x, y, z}.
+    // Matter: which particles exist, and what they weigh.
+
+    [[nodiscard]] taut_result set_mask(uint32_t count, const uint8_t *present) noexcept
+    {
+        return taut_cloth_set_mask(handle_, count, present);
+    }
+
+    [[nodiscard]] taut_result set_masses(uint32_t count, const float *mass_kg) noexcept
+    {
+        return taut_cloth_set_masses(handle_, count, mass_kg);
+    }
+
+    // Surroundings. A vector can be written as {x, y, z}.
+
+    [[nodiscard]] taut_result set_gravity(const float (&gravity_m_s2)[3]) noexcept
+    {
+        return taut_cloth_set_gravity(handle_, gravity_m_s2);
+    }
+
+    [[nodiscard]] taut_result set_damping(float damping_per_s) noexcept
+    {
+        return taut_cloth_set_damping(handle_, damping_per_s);
+    }
+
+    [[nodiscard]] taut_result set_rest_scale(float warp, float weft, float diagonal) noexcept
+    {
+        return taut_cloth_set_rest_scale(handle_, warp, weft, diagonal);
+    }
+
+    [[nodiscard]] taut_result set_air(const taut_air &air) noexcept { return taut_cloth_set_air(handle_, &air); }
+
+    [[nodiscard]] taut_result air(taut_air &out) const noexcept { return taut_cloth_air(handle_, &out); }
+
+    // Frame.
+
+    [[nodiscard]] taut_result set_frame(const taut_frame &frame, float linear_inertia, float angular_inertia) noexcept
+    {
+        return taut_cloth_set_frame(handle_, &frame, linear_inertia, angular_inertia);
+    }
+
+    [[nodiscard]] taut_result teleport(const taut_frame &frame) noexcept { return taut_cloth_teleport(handle_, &frame); }
+
+    [[nodiscard]] taut_result set_origin(const double (&origin_m)[3]) noexcept
+    {
+        return taut_cloth_set_origin(handle_, origin_m);
+    }
+
+    [[nodiscard]] taut_result frame(taut_frame &out) const noexcept { return taut_cloth_frame(handle_, &out); }
+
+    // Pins and particles.
 
     [[nodiscard]] taut_result pin(uint32_t particle) noexcept { return taut_cloth_pin(handle_, particle); }
 
@@ -210,6 +272,16 @@ public:
     [[nodiscard]] taut_result unpin(uint32_t particle) noexcept { return taut_cloth_unpin(handle_, particle); }
 
     [[nodiscard]] taut_result pin_count(uint32_t &out) const noexcept { return taut_cloth_pin_count(handle_, &out); }
+
+    [[nodiscard]] taut_result pin_force(uint32_t particle, float (&out_n)[3]) noexcept
+    {
+        return taut_cloth_pin_force(handle_, particle, out_n);
+    }
+
+    [[nodiscard]] taut_result copy_pin_forces_f32(Attribute out) noexcept
+    {
+        return taut_cloth_copy_pin_forces_f32(handle_, out.data, out.size, out.stride);
+    }
 
     [[nodiscard]] taut_result set_position(uint32_t particle, const float (&local_m)[3]) noexcept
     {
@@ -231,6 +303,56 @@ public:
         return taut_cloth_add_force(handle_, particle, force_n);
     }
 
+    // Colliders.
+
+    [[nodiscard]] taut_result collider_add(const taut_collider_def &def, uint32_t &out_id) noexcept
+    {
+        return taut_cloth_collider_add(handle_, &def, &out_id);
+    }
+
+    [[nodiscard]] taut_result collider_move(uint32_t id, const taut_pose &pose) noexcept
+    {
+        return taut_cloth_collider_move(handle_, id, &pose);
+    }
+
+    [[nodiscard]] taut_result collider_set_pose(uint32_t id, const taut_pose &pose) noexcept
+    {
+        return taut_cloth_collider_set_pose(handle_, id, &pose);
+    }
+
+    [[nodiscard]] taut_result collider_remove(uint32_t id) noexcept { return taut_cloth_collider_remove(handle_, id); }
+
+    [[nodiscard]] taut_result collider_pose(uint32_t id, taut_pose &out) const noexcept
+    {
+        return taut_cloth_collider_pose(handle_, id, &out);
+    }
+
+    [[nodiscard]] taut_result collider_count(uint32_t &out) const noexcept
+    {
+        return taut_cloth_collider_count(handle_, &out);
+    }
+
+    // Targets. The backstop may be left out; normals may be NULL.
+
+    [[nodiscard]] taut_result set_target_limits(uint32_t count, const float *max_distance_m,
+                                                const float *backstop_radius_m = nullptr,
+                                                const float *backstop_distance_m = nullptr) noexcept
+    {
+        return taut_cloth_set_target_limits(handle_, count, max_distance_m, backstop_radius_m, backstop_distance_m);
+    }
+
+    [[nodiscard]] taut_result move_targets(const double (&base_m)[3], uint32_t count, const void *positions_m,
+                                           const void *normals, size_t stride) noexcept
+    {
+        return taut_cloth_move_targets(handle_, base_m, count, positions_m, normals, stride);
+    }
+
+    [[nodiscard]] taut_result set_targets(const double (&base_m)[3], uint32_t count, const void *positions_m,
+                                          const void *normals, size_t stride) noexcept
+    {
+        return taut_cloth_set_targets(handle_, base_m, count, positions_m, normals, stride);
+    }
+
     // Steps. out_flags may be left out.
 
     [[nodiscard]] taut_result step(uint32_t *out_flags = nullptr) noexcept
@@ -242,6 +364,10 @@ public:
     {
         return taut_cloth_step_many(handle_, count, out_flags);
     }
+
+    [[nodiscard]] taut_result wake() noexcept { return taut_cloth_wake(handle_); }
+
+    [[nodiscard]] taut_result is_asleep(uint32_t &out) const noexcept { return taut_cloth_is_asleep(handle_, &out); }
 
     [[nodiscard]] taut_result step_index(uint64_t &out) const noexcept { return taut_cloth_step_index(handle_, &out); }
 

@@ -39,6 +39,7 @@ pub unsafe extern "C" fn taut_cloth_def_default(on: *const GridHandle) -> ClothD
         gravity_m_s2: d.gravity_m_s2,
         u_axis: d.u_axis,
         v_axis: d.v_axis,
+        reserved: 0,
     }
 }
 

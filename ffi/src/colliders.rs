@@ -3,62 +3,9 @@ use taut_core::{Pose as CorePose, Shape, Vector3};
 use crate::handle::{ClothHandle, change, look};
 use crate::pointer::{Out, value};
 use crate::result::Code;
+use crate::types::{ColliderDef, ColliderShape, Pose};
 
 const COOKIE: u32 = 0x6c6f_6374;
-
-/// The shape of a collider.
-#[allow(non_camel_case_types, reason = "these are the names in C")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum ColliderShape {
-    /// A ball around the collider's position: radius_m[0].
-    TAUT_SHAPE_SPHERE = 1,
-    /// The hull of two balls: ends_m and radius_m. Where one ball holds the other it is the larger ball.
-    TAUT_SHAPE_CAPSULE = 2,
-    /// The half space behind the plane through the collider's position: normal.
-    TAUT_SHAPE_PLANE = 3,
-    /// A box around the collider's position: half_m.
-    TAUT_SHAPE_BOX = 4,
-}
-
-/// Where a collider is.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct Pose {
-    /// Position in the world in m, at most 1e6 from the cloth's origin along each axis.
-    pub position_m: [f64; 3],
-    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
-    pub rotation: [f32; 4],
-}
-
-/// What a collider is made of. Comes from taut_collider_def_default(), then change what you need. Lengths are in m, in the
-/// collider's own frame; fields that the shape does not use are not looked at.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct ColliderDef {
-    /// Bytes of this structure. Set by taut_collider_def_default().
-    pub size: u32,
-    /// Shows that the definition came from taut_collider_def_default().
-    pub cookie: u32,
-    /// Where it is. Default 0, 0, 0, not turned.
-    pub pose: Pose,
-    /// A taut_shape.
-    pub shape: u32,
-    /// Coefficient of Coulomb friction, 0 to 100. Default 0.3.
-    pub friction: f32,
-    /// Distance from the shape that the particles keep, in m, 0 to 1e3. Default 0.005.
-    pub thickness_m: f32,
-    /// Radius of the sphere, or of the capsule at its two ends, 1e-6 to 1e4. Default 0.1, 0.1.
-    pub radius_m: [f32; 2],
-    /// Ends of the capsule, at most 1e4 along each axis. Default (0, -0.1, 0) and (0, 0.1, 0).
-    pub ends_m: [[f32; 3]; 2],
-    /// Direction out of the half space, 1e-3 to 1e3 long. Default (0, 1, 0).
-    pub normal: [f32; 3],
-    /// Half the side lengths of the box, 1e-6 to 1e4. Default (0.1, 0.1, 0.1).
-    pub half_m: [f32; 3],
-    /// 0.
-    pub reserved: u32,
-}
 
 /// A definition of a collider with its defaults; shape is a taut_shape.
 ///

@@ -100,6 +100,21 @@ pub enum Solver {
     TAUT_SOLVER_BDF2 = 2,
 }
 
+/// The shape of a collider.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum ColliderShape {
+    /// A ball around the collider's position: radius_m[0].
+    TAUT_SHAPE_SPHERE = 1,
+    /// The hull of two balls: ends_m and radius_m. Where one ball holds the other it is the larger ball.
+    TAUT_SHAPE_CAPSULE = 2,
+    /// The half space behind the plane through the collider's position: normal.
+    TAUT_SHAPE_PLANE = 3,
+    /// A box around the collider's position: half_m.
+    TAUT_SHAPE_BOX = 4,
+}
+
 /// What a grid is made of. Comes from taut_grid_def_default(), then change what you need.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -182,6 +197,8 @@ pub struct ClothDef {
     pub u_axis: [f32; 3],
     /// Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     pub v_axis: [f32; 3],
+    /// 0.
+    pub reserved: u32,
 }
 
 /// Memory that a call asks for.
@@ -243,6 +260,45 @@ pub struct BudgetReport {
     pub inertia_added: f32,
     /// Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     pub hinge_fraction: f32,
+}
+
+/// Where a collider is.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Pose {
+    /// Position in the world in m, at most 1e6 from the cloth's origin along each axis.
+    pub position_m: [f64; 3],
+    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
+    pub rotation: [f32; 4],
+}
+
+/// What a collider is made of. Comes from taut_collider_def_default(), then change what you need. Lengths are in m, in the
+/// collider's own frame; fields that the shape does not use are not looked at.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ColliderDef {
+    /// Bytes of this structure. Set by taut_collider_def_default().
+    pub size: u32,
+    /// Shows that the definition came from taut_collider_def_default().
+    pub cookie: u32,
+    /// Where it is. Default 0, 0, 0, not turned.
+    pub pose: Pose,
+    /// A taut_shape.
+    pub shape: u32,
+    /// Coefficient of Coulomb friction, 0 to 100. Default 0.3.
+    pub friction: f32,
+    /// Distance from the shape that the particles keep, in m, 0 to 1e3. Default 0.005.
+    pub thickness_m: f32,
+    /// Radius of the sphere, or of the capsule at its two ends, 1e-6 to 1e4. Default 0.1, 0.1.
+    pub radius_m: [f32; 2],
+    /// Ends of the capsule, at most 1e4 along each axis. Default (0, -0.1, 0) and (0, 0.1, 0).
+    pub ends_m: [[f32; 3]; 2],
+    /// Direction out of the half space, 1e-3 to 1e3 long. Default (0, 1, 0).
+    pub normal: [f32; 3],
+    /// Half the side lengths of the box, 1e-6 to 1e4. Default (0.1, 0.1, 0.1).
+    pub half_m: [f32; 3],
+    /// 0.
+    pub reserved: u32,
 }
 
 /// The air around a cloth: drag and lift by the velocity of its cells relative to the wind. Comes from taut_air_default(),

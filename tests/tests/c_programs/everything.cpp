@@ -42,6 +42,9 @@ struct Vertex {
 taut::GridStorage grid_memory;
 taut::ClothStorage<side, side, 3, TAUT_FAMILY_ALL, TAUT_FEATURE_PULL> cloth_memory;
 taut::ClothStorage<side, side, 3, TAUT_FAMILY_ALL, TAUT_FEATURE_PULL> other_memory;
+constexpr uint32_t whole_features = TAUT_FEATURE_AIR | TAUT_FEATURE_MASS | TAUT_FEATURE_MASK | TAUT_FEATURE_COLLIDERS |
+                                    TAUT_FEATURE_TARGETS;
+taut::ClothStorage<side, side, 3, TAUT_FAMILY_ALL, whole_features> whole_memory;
 unsigned char file_bytes[64 * 1024];
 unsigned char snapshot[64 * 1024];
 Vertex vertices[particles];
@@ -64,6 +67,106 @@ int empty_handles()
     EMPTY(cloth.step());
     EMPTY(cloth.create(grid, taut::cloth_def_default(grid), cloth_memory));
     REQUIRE(!cloth);
+    return 0;
+}
+
+// What the engine's world does to a cloth: air, frame, colliders, a skin.
+int surroundings(const taut::Grid &grid)
+{
+    taut_cloth_def def = taut::cloth_def_default(grid);
+    def.max_pins = 3;
+    def.features = whole_features;
+    def.sleep_speed_m_s = 1000.0f;
+    taut_memory memory;
+    DONE(taut::cloth_memory(grid, def, memory));
+    REQUIRE(memory.size == sizeof whole_memory);
+    taut::Cloth cloth;
+    DONE(cloth.create(grid, def, whole_memory));
+    const taut::Cloth &read = cloth;
+    const float field[4] = {100, -100, 100, 100};
+    uint32_t repaired = 0;
+    DONE(cloth.set_stiffness_field_sanitised(1, 2, 2, field));
+    DONE(cloth.set_stiffness_field_sanitised(1, 2, 2, field, &repaired));
+    REQUIRE(repaired == 1);
+    DONE(cloth.set_stiffness_uniform(500, 500, 100, 5));
+
+    uint8_t present[particles];
+    float mass[particles];
+    for (uint32_t i = 0; i < particles; ++i) {
+        present[i] = i != particles - 1;
+        mass[i] = 2.0f * def.density_kg_m2 / particles;
+    }
+    DONE(cloth.set_mask(particles, present));
+    DONE(cloth.set_masses(particles, mass));
+    REQUIRE(cloth.pin(particles - 1) == TAUT_ERROR_ABSENT);
+    DONE(cloth.set_gravity({0.0f, -1.0f, 0.0f}));
+    DONE(cloth.set_damping(3.0f));
+    DONE(cloth.set_rest_scale(1.0f, 1.0f, 1.01f));
+    taut_air air = taut::air_default(), now;
+    air.wind_m_s[2] = 2.0f;
+    DONE(cloth.set_air(air));
+    DONE(read.air(now));
+    REQUIRE(now.wind_m_s[2] == 2.0f && now.seed == air.seed);
+
+    taut_collider_def ball = taut::collider_def_default(TAUT_SHAPE_SPHERE);
+    ball.pose.position_m[2] = -5.0;
+    uint32_t id, count;
+    DONE(cloth.collider_add(ball, id));
+    taut_pose pose = ball.pose, there;
+    pose.position_m[2] = -6.0;
+    DONE(cloth.collider_set_pose(id, pose));
+    DONE(read.collider_pose(id, there));
+    REQUIRE(there.position_m[2] == -6.0);
+    DONE(cloth.collider_move(id, ball.pose));
+    DONE(read.collider_count(count));
+    REQUIRE(count == 1);
+
+    float far[particles], none[particles] = {}, skin[particles][6];
+    for (uint32_t i = 0; i < particles; ++i) {
+        const float u = static_cast<float>(i % side) / 7.0f, v = static_cast<float>(i / side) / 7.0f;
+        const float at[6] = {u, -v, 0.0f, 0.0f, 0.0f, 1.0f};
+        far[i] = 10.0f;
+        for (int j = 0; j < 6; ++j) {
+            skin[i][j] = at[j];
+        }
+    }
+    DONE(cloth.set_target_limits(particles, far));
+    DONE(cloth.set_target_limits(particles, far, none, none));
+    DONE(cloth.set_targets({0.0, 0.0, 0.0}, particles, skin, &skin[0][3], sizeof skin[0]));
+    DONE(cloth.move_targets({0.0, 0.0, 0.01}, particles, skin, nullptr, sizeof skin[0]));
+
+    DONE(cloth.pin(0));
+    DONE(cloth.pin(side - 1));
+    uint32_t flags, asleep = 1;
+    DONE(cloth.step(&flags));
+    REQUIRE(flags == 0);
+    float force[3], forces[2][3];
+    DONE(cloth.pin_force(0, force));
+    DONE(cloth.copy_pin_forces_f32(taut::attribute(forces, 2)));
+    REQUIRE(force[0] == forces[0][0] && force[1] == forces[0][1] && force[2] == forces[0][2]);
+    DONE(cloth.collider_remove(id));
+    REQUIRE(read.collider_pose(id, there) == TAUT_ERROR_NO_SUCH_COLLIDER);
+
+    taut_frame frame;
+    DONE(read.frame(frame));
+    frame.position_m[0] = 0.1;
+    DONE(cloth.set_frame(frame, 0.5f, 0.5f));
+    DONE(cloth.step(&flags));
+    frame.position_m[0] = 500.0;
+    DONE(cloth.teleport(frame));
+    DONE(cloth.set_origin({1000.0, 0.0, 0.0}));
+    DONE(read.frame(frame));
+    REQUIRE(frame.position_m[0] == 1000.0);
+
+    // everything is slower than 1 km/s
+    DONE(read.is_asleep(asleep));
+    REQUIRE(asleep == 0);
+    DONE(cloth.step_many(60, &flags));
+    DONE(read.is_asleep(asleep));
+    REQUIRE(asleep == 1 && (flags & TAUT_STEP_ASLEEP) != 0);
+    DONE(cloth.wake());
+    DONE(read.is_asleep(asleep));
+    REQUIRE(asleep == 0);
     return 0;
 }
 
@@ -202,7 +305,7 @@ int run(const void *file, size_t size)
     DONE(other.reset());
     DONE(other.step_index(index));
     REQUIRE(index == 0);
-    return 0;
+    return surroundings(grid);
 }
 
 } // namespace

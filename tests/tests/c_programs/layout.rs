@@ -71,10 +71,18 @@ fn structures_and_values_are_those_of_rust() {
         inertia_radius_m,
         inertia_max,
         max_pins,
+        solver,
+        cg_iterations,
+        tether_slack,
+        strain_limit,
+        strain_passes,
+        hinge_rigidity_n_m,
+        sleep_speed_m_s,
         features,
         gravity_m_s2,
         u_axis,
-        v_axis
+        v_axis,
+        reserved
     );
     structure!(t, types::Memory, "taut_memory", size, align);
     structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
@@ -88,6 +96,23 @@ fn structures_and_values_are_those_of_rust() {
         cut_fraction,
         inertia_added,
         hinge_fraction
+    );
+    structure!(t, types::Pose, "taut_pose", position_m, rotation);
+    structure!(
+        t,
+        types::ColliderDef,
+        "taut_collider_def",
+        size,
+        cookie,
+        pose,
+        shape,
+        friction,
+        thickness_m,
+        radius_m,
+        ends_m,
+        normal,
+        half_m,
+        reserved
     );
     structure!(t, types::Air, "taut_air", wind_m_s, density_kg_m3, drag, lift, gust, gust_hz, seed);
     structure!(
@@ -113,13 +138,37 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_ERROR_BAD_HANDLE", -100),
         ("TAUT_BUDGET_CERTIFIED", taut::Budget::Certified as i64),
         ("TAUT_BUDGET_TUNED", taut::Budget::Tuned as i64),
+        ("TAUT_SOLVER_SYMPLECTIC_EULER", taut::Solver::SymplecticEuler as i64),
+        ("TAUT_SOLVER_IMPLICIT_EULER", taut::Solver::ImplicitEuler as i64),
+        ("TAUT_SOLVER_BDF2", taut::Solver::Bdf2 as i64),
+        ("TAUT_SHAPE_SPHERE", types::ColliderShape::TAUT_SHAPE_SPHERE as i64),
+        ("TAUT_SHAPE_CAPSULE", types::ColliderShape::TAUT_SHAPE_CAPSULE as i64),
+        ("TAUT_SHAPE_PLANE", types::ColliderShape::TAUT_SHAPE_PLANE as i64),
+        ("TAUT_SHAPE_BOX", types::ColliderShape::TAUT_SHAPE_BOX as i64),
+        ("TAUT_FAMILY_STRUCTURAL", i64::from(taut::Families::STRUCTURAL.0)),
+        ("TAUT_FAMILY_SHEAR", i64::from(taut::Families::SHEAR.0)),
+        ("TAUT_FAMILY_BEND", i64::from(taut::Families::BEND.0)),
         ("TAUT_FAMILY_ALL", i64::from(taut::Families::ALL.0)),
+        ("TAUT_FEATURE_NONE", i64::from(Features::NONE.0)),
         ("TAUT_FEATURE_PULL", i64::from(Features::PULL.0)),
+        ("TAUT_FEATURE_AIR", i64::from(Features::AIR.0)),
+        ("TAUT_FEATURE_HINGE", i64::from(Features::HINGE.0)),
+        ("TAUT_FEATURE_TETHERS", i64::from(Features::TETHERS.0)),
+        ("TAUT_FEATURE_STRAIN_LIMIT", i64::from(Features::STRAIN_LIMIT.0)),
+        ("TAUT_FEATURE_LEVELS", i64::from(Features::LEVELS.0)),
+        ("TAUT_FEATURE_COLLIDERS", i64::from(Features::COLLIDERS.0)),
+        ("TAUT_FEATURE_TARGETS", i64::from(Features::TARGETS.0)),
+        ("TAUT_FEATURE_MASS", i64::from(Features::MASS.0)),
+        ("TAUT_FEATURE_MASK", i64::from(Features::MASK.0)),
+        ("TAUT_FEATURE_IMPLICIT", i64::from(Features::IMPLICIT.0)),
+        ("TAUT_MAX_COLLIDERS", taut::MAX_COLLIDERS as i64),
         ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
         ("TAUT_STEP_ASLEEP", i64::from(taut::StepFlags::ASLEEP.0)),
         ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
         ("(sizeof(taut_result))", 4),
         ("(sizeof(taut_budget))", 4),
+        ("(sizeof(taut_solver))", 4),
+        ("(sizeof(taut_shape))", 4),
     ] {
         writeln!(t, "_Static_assert({name} == {value}, \"{name}\");").unwrap();
     }
@@ -166,9 +215,16 @@ fn defaults(t: &mut String) {
     equal("d.inertia_radius_m", d.inertia_radius_m.into());
     equal("d.inertia_max", d.inertia_max.into());
     equal("(float)d.max_pins", d.max_pins.into());
+    equal("(float)d.solver", f64::from(d.solver as u32));
+    equal("(float)d.cg_iterations", d.cg_iterations.into());
+    equal("(float)d.strain_passes", d.strain_passes.into());
+    equal("d.hinge_rigidity_n_m", d.hinge_rigidity_n_m.into());
+    equal("d.sleep_speed_m_s", d.sleep_speed_m_s.into());
     equal("(float)d.features", d.features.0.into());
     for i in 0..3 {
         equal(&format!("(float)d.origin_m[{i}]"), d.origin_m[i]);
+        equal(&format!("d.tether_slack[{i}]"), d.tether_slack[i].into());
+        equal(&format!("d.strain_limit[{i}]"), d.strain_limit[i].into());
         equal(&format!("d.gravity_m_s2[{i}]"), d.gravity_m_s2[i].into());
         equal(&format!("d.u_axis[{i}]"), d.u_axis[i].into());
         equal(&format!("d.v_axis[{i}]"), d.v_axis[i].into());
