@@ -150,9 +150,8 @@ pub(crate) fn take<'a>(block: &mut &'a mut [f32], n: usize) -> Result<&'a mut [f
 
 /// Copies as many numbers as both have.
 pub(crate) fn copy(to: &mut [f32], from: &[f32]) {
-    let n = to.len().min(from.len());
-    if let (Some(to), Some(from)) = (to.get_mut(..n), from.get(..n)) {
-        to.copy_from_slice(from);
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = *from;
     }
 }
 

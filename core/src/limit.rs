@@ -5,7 +5,7 @@
 //! is split: along u the even columns then the odd ones, along v the even rows then the odd ones, the diagonals likewise.
 //! Every second sweep runs the families backwards, so that none always has the last word.
 
-use crate::layout::span;
+use crate::layout::{read, span, write};
 use crate::mask::is_absent;
 use crate::math::{max, sqrt};
 
@@ -216,29 +216,32 @@ fn links(up: Row<'_>, low: Row<'_>, limit: impl Fn(usize) -> f32) {
     let (ux, uy, uz, uw) = (up.x, up.y, up.z, up.w);
     let (lx, ly, lz, lw) = (low.x, low.y, low.z, low.w);
     let (um, lm) = (up.m, low.m);
-    if [uy.len(), uz.len(), uw.len(), lx.len(), ly.len(), lz.len(), lw.len()].iter().any(|l| *l != n) {
-        return;
-    }
     let mut start = 0;
     while start < n {
         let end = if start + BLOCK < n { start + BLOCK } else { n };
+        let of = |p: &[f32], i: usize| read(p, i);
         let mut long = false;
         for i in start..end {
-            let (dx, dy, dz) = (lx[i] - ux[i], ly[i] - uy[i], lz[i] - uz[i]);
+            let (dx, dy, dz) = (of(lx, i) - of(ux, i), of(ly, i) - of(uy, i), of(lz, i) - of(uz, i));
             let m = limit(i);
             long |= dx * dx + dy * dy + dz * dz > m * m;
         }
         if long {
             for i in start..end {
-                let (dx, dy, dz) = (lx[i] - ux[i], ly[i] - uy[i], lz[i] - uz[i]);
+                let (dx, dy, dz) = (of(lx, i) - of(ux, i), of(ly, i) - of(uy, i), of(lz, i) - of(uz, i));
                 let d2 = max(dx * dx + dy * dy + dz * dz, TINY);
-                let mut f = max(1.0 - limit(i) / sqrt(d2), 0.0) / max(uw[i] + lw[i], f32::MIN_POSITIVE);
+                let (wu, wl) = (of(uw, i), of(lw, i));
+                let mut f = max(1.0 - limit(i) / sqrt(d2), 0.0) / max(wu + wl, f32::MIN_POSITIVE);
                 if is_absent(um, i) || is_absent(lm, i) {
                     f = 0.0;
                 }
-                let (a, b) = (f * uw[i], f * lw[i]);
-                (ux[i], uy[i], uz[i]) = (ux[i] + dx * a, uy[i] + dy * a, uz[i] + dz * a);
-                (lx[i], ly[i], lz[i]) = (lx[i] - dx * b, ly[i] - dy * b, lz[i] - dz * b);
+                let (a, b) = (f * wu, f * wl);
+                for (upper, lower, d) in [(&mut *ux, &mut *lx, dx), (&mut *uy, &mut *ly, dy), (&mut *uz, &mut *lz, dz)]
+                {
+                    let (u, l) = (of(upper, i) + d * a, of(lower, i) - d * b);
+                    write(upper, i, u);
+                    write(lower, i, l);
+                }
             }
         }
         start = end;

@@ -185,7 +185,8 @@ impl Cloth<'_> {
         let mut pose = Pose::new(&self.def);
         if flags & FRAME != 0 {
             let number = |i: usize| f64::from_bits(u64_at(body, HEADER + 8 * i));
-            pose = Pose::from_numbers([0, 1, 2, 3, 4, 5, 6].map(number)).checked()?;
+            pose = Pose::from_numbers([number(0), number(1), number(2), number(3), number(4), number(5), number(6)])
+                .checked()?;
             from += FRAME_BYTES;
         }
         let (numbers, _) = body.get(from..).unwrap_or(&[]).as_chunks::<4>();

@@ -2,7 +2,7 @@
 //! far as the sweeps reach. What is moved is also given to the velocity, x += D and v += D/dt.
 
 use crate::force::Substep;
-use crate::layout::{Layout, read, span, take};
+use crate::layout::{Layout, copy, read, span, take};
 use crate::limit::{Reach, Sheet};
 use crate::mask::is_absent;
 use crate::{Cloth, Error};
@@ -64,7 +64,7 @@ impl Cloth<'_> {
     /// Keeps the positions as they are, for [`Cloth::finish_limits`].
     pub(crate) fn begin_limits(&mut self) {
         for (to, from) in self.before.planes.iter_mut().zip([&*self.x.x, &*self.x.y, &*self.x.z]) {
-            to.copy_from_slice(from);
+            copy(to, from);
         }
     }
 
