@@ -39,7 +39,7 @@ mod tests {
         let (first, rest) = out.split_at(DESCRIPTION);
         let (second, zero) = rest.split_at(DESCRIPTION);
         let mean_square = first.iter().map(|x| x * x).sum::<f32>() / DESCRIPTION as f32;
-        assert!((mean_square - 1.0).abs() < 1e-5, "{mean_square}");
+        assert!((mean_square - 1.0).abs() < 1e-4, "{mean_square}");
         assert!(first.iter().zip(second).all(|(a, b)| (a - b).abs() < 1e-4));
         assert!(zero.iter().all(|x| *x == 0.0));
         assert!(gradient.into_data().try_into_vec::<f32>().expect("f32").iter().all(|g| g.is_finite()));
