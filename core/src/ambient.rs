@@ -54,7 +54,7 @@ impl Ambient {
     /// Checks what may be anything, as the setters do. Errors: theirs.
     pub fn check(&self, def: &ClothDef) -> Result<(), Error> {
         ClothDef { gravity_m_s2: self.gravity(), damping_per_s: self.damping(), ..*def }.check()?;
-        crate::Air::from_numbers(|i| self.get(AIR_AT + i)).check()?;
+        Air::from_numbers(|i| self.get(AIR_AT + i)).check()?;
         check_scale(self.rest_scale())
     }
 

@@ -31,6 +31,7 @@ pub const TUNED_SHARE: f32 = 0.8;
 /// step to step, and near the limit the fastest modes then draw energy from the stepping itself: at 0.5 a crumpled sheet
 /// boils for ever, in spite of damping of 1/s. At 0.35 it comes to rest (docs/budget.md).
 pub const CERTIFIED_SHARE: f32 = 0.35;
+
 /// The hinges may use at most this share of the limit: the springs need it more, or the cloth stretches.
 pub const HINGE_SHARE: f32 = 0.25;
 
@@ -51,7 +52,6 @@ pub struct BudgetReport {
 
 /// Writes the springs of a target field after the budget. `hinges` is what the hinges add to a particle at most in N/m,
 /// `scale` is scratch of one plane.
-#[allow(clippy::too_many_arguments)] // they are planes of one cloth that are borrowed apart
 pub(crate) fn project(
     body: &Body<'_>,
     target: &[&mut [f32]; 4],
@@ -145,7 +145,7 @@ fn average(body: &Body<'_>, target: &[&mut [f32]; 4], springs: &mut Springs<'_>)
     // channel of each spring plane: u weft, v warp, the diagonals shear, bend twice
     const CHANNEL: [usize; 6] = [1, 0, 2, 2, 3, 3];
     each_spring(body.layout, |at, other, plane| {
-        if cuts(body.mask, body.layout, at, other, plane) {
+        if cuts(body.mask, body.layout.stride, at, other, plane) {
             write(springs.plane(plane), at, 0.0);
             return;
         }

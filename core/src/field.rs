@@ -1,6 +1,6 @@
 //! The stiffness field: `[channel][row][column]` in N/m at the particles.
 
-use crate::math::min;
+use crate::math::{lerp, min};
 use crate::{Error, in_default_environment};
 
 /// Order of the channels.
@@ -91,8 +91,6 @@ pub fn bilinear(
 ) -> f32 {
     let (r0, r1, fr) = place(at.0, to.0, from.0);
     let (c0, c1, fc) = place(at.1, to.1, from.1);
-    // in this form a constant stays that constant to the bit, and the largest f32 does not overflow
-    let lerp = |a: f32, b: f32, share: f32| a + (b - a) * share;
     let top = lerp(value(r0, c0), value(r0, c1), fc);
     let bottom = lerp(value(r1, c0), value(r1, c1), fc);
     lerp(top, bottom, fr)

@@ -42,13 +42,6 @@ impl Lanes {
     }
 }
 
-impl From<[f32; LANES]> for Lanes {
-    #[inline(always)]
-    fn from(x: [f32; LANES]) -> Lanes {
-        Lanes(x)
-    }
-}
-
 impl Add for Lanes {
     type Output = Lanes;
     #[inline(always)]

@@ -9,6 +9,7 @@
 use crate::force::Substep;
 use crate::layout::{Layout, read, take, write};
 use crate::limit::Sheet;
+use crate::math::lerp;
 use crate::strain_limit::TARGET;
 use crate::{Cloth, Error};
 
@@ -106,7 +107,7 @@ impl<'a> Levels<'a> {
     }
 }
 
-/// The planes of a coarse level.
+/// The planes of a coarse level: positions, and once it is settled the ways from where its particles are to there.
 struct Nodes<'n> {
     x: [&'n mut [f32]; 3],
     inverse: &'n mut [f32],
@@ -116,6 +117,18 @@ impl<'n> Nodes<'n> {
     /// Takes the planes of a level off the memory of the levels.
     fn take(rest: &mut &'n mut [f32], nodes: usize) -> Result<Self, Error> {
         Ok(Nodes { x: [take(rest, nodes)?, take(rest, nodes)?, take(rest, nodes)?], inverse: take(rest, nodes)? })
+    }
+
+    /// The way at a particle, bilinearly between the nodes around it.
+    fn way(&self, level: &Level, row: usize, column: usize) -> [f32; 3] {
+        let [columns, _] = level.size;
+        let ((u, share_u), (v, share_v)) = (level.before(0, column), level.before(1, row));
+        let node = v * columns + u;
+        self.x.each_ref().map(|plane| {
+            let top = lerp(read(plane, node), read(plane, node + 1), share_u);
+            let bottom = lerp(read(plane, node + columns), read(plane, node + columns + 1), share_u);
+            lerp(top, bottom, share_v)
+        })
     }
 }
 
@@ -164,33 +177,15 @@ impl Cloth<'_> {
                 mask: &[],
                 reach: self.reach(c, target, level.span, level.last_span()),
             };
-            sheet.sweep(COARSE_SWEEPS, true);
+            sheet.sweep(COARSE_SWEEPS);
+            self.leave_the_ways(&level, &mut nodes);
             if k == 1 {
-                self.hand_down(&level, &mut nodes);
+                self.hand_down(&level, &nodes);
             }
         }
         self.levels.numbers = numbers;
         self.tether_particles();
         self.sweep_finest(c, target, self.def.strain_passes);
-    }
-
-    /// Where a level has moved its nodes to, less where their particles are: bilinearly between the nodes around a particle.
-    fn displacement(&self, nodes: &Nodes<'_>, level: &Level, row: usize, column: usize) -> [f32; 3] {
-        let [columns, _] = level.size;
-        let ((u, share_u), (v, share_v)) = (level.before(0, column), level.before(1, row));
-        let moved = |u: usize, v: usize| {
-            let node = v * columns + u;
-            let at = self.layout.at(level.particle(1, v), level.particle(0, u));
-            let [x, y, z] = &nodes.x;
-            let here = self.local(at);
-            [read(x, node) - here[0], read(y, node) - here[1], read(z, node) - here[2]]
-        };
-        let lerp = |a: [f32; 3], b: [f32; 3], share: f32| {
-            [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, a[2] + (b[2] - a[2]) * share]
-        };
-        let top = lerp(moved(u, v), moved(u + 1, v), share_u);
-        let bottom = lerp(moved(u, v + 1), moved(u + 1, v + 1), share_u);
-        lerp(top, bottom, share_v)
     }
 
     /// Fills the nodes of a level: where their particles are, moved by what the coarser level found.
@@ -207,7 +202,7 @@ impl Cloth<'_> {
                 if let Some((above, coarser)) = above
                     && inverse > 0.0
                 {
-                    let d = self.displacement(above, coarser, row, column);
+                    let d = above.way(coarser, row, column);
                     moved = [x + d[0], y + d[1], z + d[2]];
                 }
                 for (x, m) in nodes.x.iter_mut().zip(moved) {
@@ -239,36 +234,30 @@ impl Cloth<'_> {
         }
     }
 
-    /// Moves all particles by the displacement of the first coarse level. What the nodes were moved by is written to them in
-    /// place first, since their particles move too.
-    fn hand_down(&mut self, level: &Level, nodes: &mut Nodes<'_>) {
+    /// Takes off the nodes where their particles are.
+    fn leave_the_ways(&self, level: &Level, nodes: &mut Nodes<'_>) {
         let [columns, rows] = level.size;
         for v in 0..rows {
             for u in 0..columns {
-                let [x, y, z] = self.local(self.layout.at(level.particle(1, v), level.particle(0, u)));
-                for (plane, here) in nodes.x.iter_mut().zip([x, y, z]) {
+                let here = self.local(self.layout.at(level.particle(1, v), level.particle(0, u)));
+                for (plane, here) in nodes.x.iter_mut().zip(here) {
                     let node = v * columns + u;
-                    let moved = read(plane, node) - here;
-                    write(plane, node, moved);
+                    let way = read(plane, node) - here;
+                    write(plane, node, way);
                 }
             }
         }
+    }
+
+    /// Moves all particles by the ways of the first coarse level.
+    fn hand_down(&mut self, level: &Level, nodes: &Nodes<'_>) {
         let l = self.layout;
-        let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z];
-        for (plane, moved) in planes.into_iter().zip(&nodes.x) {
-            for row in 0..l.rows {
-                let (v, share_v) = level.before(1, row);
-                for column in 0..l.columns {
-                    let at = l.at(row, column);
-                    if read(self.inverse, at) > 0.0 {
-                        let (u, share_u) = level.before(0, column);
-                        let node = v * columns + u;
-                        let lerp = |a: f32, b: f32, share: f32| a + (b - a) * share;
-                        let top = lerp(read(moved, node), read(moved, node + 1), share_u);
-                        let bottom = lerp(read(moved, node + columns), read(moved, node + columns + 1), share_u);
-                        let x = read(plane, at) + lerp(top, bottom, share_v);
-                        write(plane, at, x);
-                    }
+        for row in 0..l.rows {
+            for column in 0..l.columns {
+                let at = l.at(row, column);
+                if read(self.inverse, at) > 0.0 {
+                    let ([x, y, z], [dx, dy, dz]) = (self.local(at), nodes.way(level, row, column));
+                    self.set_position_at(at, [x + dx, y + dy, z + dz]);
                 }
             }
         }

@@ -5,7 +5,7 @@
 //! diagonal at least one of the two other corners of its cell: else it would reach across a gap. A cell with three corners is
 //! a triangle, which is how a torn edge looks.
 
-use crate::layout::{Layout, read, span, write};
+use crate::layout::{read, span, write};
 use crate::{Cloth, Error, Hash64};
 
 /// Whether a particle is absent; `mask` is empty without the feature.
@@ -15,17 +15,17 @@ pub(crate) fn is_absent(mask: &[f32], at: usize) -> bool {
 }
 
 /// Whether a spring is cut by absent particles. `plane` as in the budget's `each_spring`: along u, along v, to the lower
-/// right, to the lower left, bend along u, bend along v.
-pub(crate) fn cuts(mask: &[f32], l: &Layout, at: usize, other: usize, plane: usize) -> bool {
+/// right, to the lower left, bend along u, bend along v; `stride` is the way to the row below.
+pub(crate) fn cuts(mask: &[f32], stride: usize, at: usize, other: usize, plane: usize) -> bool {
     if mask.is_empty() {
         return false;
     }
     let absent = |at: usize| read(mask, at) == 0.0;
     let between = match plane {
-        2 => absent(at + 1) && absent(at + l.stride),
-        3 => absent(at - 1) && absent(at + l.stride),
+        2 => absent(at + 1) && absent(at + stride),
+        3 => absent(at - 1) && absent(at + stride),
         4 => absent(at + 1),
-        5 => absent(at + l.stride),
+        5 => absent(at + stride),
         _ => false,
     };
     absent(at) || absent(other) || between

@@ -19,6 +19,12 @@ pub fn sqrt(x: f32) -> f32 {
     }
 }
 
+/// From `a` to `b` by a share: a constant stays that constant to the bit, and the largest f32 does not overflow.
+#[inline(always)]
+pub(crate) fn lerp(a: f32, b: f32, share: f32) -> f32 {
+    a + (b - a) * share
+}
+
 /// The larger of two numbers, `b` where they do not compare: the rule of the SSE instruction, spelled out so that every
 /// target follows it (`f32::max` leaves the sign of zero open).
 #[inline(always)]

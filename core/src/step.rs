@@ -21,7 +21,7 @@ impl StepFlags {
 }
 
 impl Cloth<'_> {
-    /// One frame: `substeps` substeps of symplectic Euler (eq. 17). The pins move to their targets.
+    /// One frame: `substeps` substeps of the solver, by default symplectic Euler (eq. 17). The pins move to their targets.
     ///
     /// The same bits whatever floating-point modes the caller has set.
     ///

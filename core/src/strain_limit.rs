@@ -4,7 +4,7 @@
 use crate::force::Substep;
 use crate::layout::{Layout, copy, read, span, take};
 use crate::limit::{Reach, Sheet};
-use crate::mask::is_absent;
+use crate::mask::cuts;
 use crate::{Cloth, Error};
 
 /// The sweeps aim at this share of the limit, since they come close to what they aim at but not below.
@@ -28,7 +28,8 @@ impl<'a> Before<'a> {
 }
 
 impl Cloth<'_> {
-    /// `target` times the limits on a sheet of every `span`-th particle (u, v); the last link of a row or column spans `last_span` cells.
+    /// `target` times the limits on a sheet of every `span`-th particle (u, v); the last link of a row or column spans
+    /// `last_span` cells.
     pub(crate) fn reach(&self, c: &Substep, target: f32, span: [usize; 2], last_span: [usize; 2]) -> Reach {
         let [warp, weft, diagonal] = self.def.strain_limit;
         // shear springs whose rest lengths are scaled by themselves
@@ -58,7 +59,7 @@ impl Cloth<'_> {
             mask: self.mask,
             reach,
         }
-        .sweep(passes, true);
+        .sweep(passes);
     }
 
     /// Keeps the positions as they are, for [`Cloth::finish_limits`].
@@ -91,51 +92,36 @@ impl Cloth<'_> {
         let l = self.layout;
         let [warp, weft, _] = self.def.strain_limit;
         let [u, v] = [c.rest_u * (1.0 + share * weft), c.rest_v * (1.0 + share * warp)];
-        let p = self.x.view();
-        let long = |at: usize, step: usize, n: usize, limit: f32| {
-            let (xs, ys, zs) = (span(p.x, at, n), span(p.y, at, n), span(p.z, at, n));
-            let (xt, yt, zt) = (span(p.x, at + step, n), span(p.y, at + step, n), span(p.z, at + step, n));
-            let mut long = false;
-            for (i, (((x, y), z), (xt, (yt, zt)))) in
-                xs.iter().zip(ys).zip(zs).zip(xt.iter().zip(yt.iter().zip(zt))).enumerate()
-            {
-                let (dx, dy, dz) = (xt - x, yt - y, zt - z);
-                let both = !is_absent(self.mask, at + i) && !is_absent(self.mask, at + step + i);
-                long |= both && dx * dx + dy * dy + dz * dz > limit * limit;
-            }
-            long
-        };
-        for row in 0..l.rows {
+        (0..l.rows).all(|row| {
             let at = l.row(row);
-            if long(at, 1, l.columns.saturating_sub(1), u) || (row + 1 < l.rows && long(at, l.stride, l.columns, v)) {
-                return false;
-            }
-        }
-        true
+            !self.any_longer(at, at + 1, l.columns.saturating_sub(1), 0, u)
+                && (row + 1 == l.rows || !self.any_longer(at, at + l.stride, l.columns, 1, v))
+        })
     }
 
     /// Whether no diagonal is longer than what the sweeps aim at.
     pub(crate) fn diagonals_within(&self, c: &Substep) -> bool {
         let l = self.layout;
-        let limit = c.rest_diagonal * (1.0 + TARGET * self.def.strain_limit[2]);
+        let [_, _, diagonal] = self.def.strain_limit;
+        let limit = c.rest_diagonal * (1.0 + TARGET * diagonal);
+        let n = l.columns.saturating_sub(1);
+        (0..l.rows.saturating_sub(1)).all(|row| {
+            let (at, below) = (l.row(row), l.row(row + 1));
+            !self.any_longer(at, below + 1, n, 2, limit) && !self.any_longer(at + 1, below, n, 3, limit)
+        })
+    }
+
+    /// Whether one of `n` links side by side, the first between two places, is longer than a limit. `plane` as in [`cuts`].
+    fn any_longer(&self, at: usize, other: usize, n: usize, plane: usize, limit: f32) -> bool {
         let p = self.x.view();
         let mut long = false;
-        for row in 0..l.rows.saturating_sub(1) {
-            let n = l.columns.saturating_sub(1);
-            // to the lower right from the first particle on, to the lower left from the second
-            for (at, other) in [(l.row(row), l.row(row + 1) + 1), (l.row(row) + 1, l.row(row + 1))] {
-                for i in 0..n {
-                    let way = |p: &[f32]| read(p, other + i) - read(p, at + i);
-                    let (dx, dy, dz) = (way(p.x), way(p.y), way(p.z));
-                    let both = !is_absent(self.mask, at + i) && !is_absent(self.mask, other + i);
-                    long |= both && dx * dx + dy * dy + dz * dz > limit * limit;
-                }
-            }
-            if long {
-                return false;
-            }
+        for i in 0..n {
+            let way = |p: &[f32]| read(p, other + i) - read(p, at + i);
+            let (dx, dy, dz) = (way(p.x), way(p.y), way(p.z));
+            long |= dx * dx + dy * dy + dz * dz > limit * limit
+                && !cuts(self.mask, self.layout.stride, at + i, other + i, plane);
         }
-        true
+        long
     }
 
     /// The limit alone: positions and velocities.

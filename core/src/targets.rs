@@ -7,7 +7,7 @@
 use crate::force::Substep;
 use crate::frame::Motion;
 use crate::layout::{Layout, copy, read, span, take, write};
-use crate::math::{max, min, sqrt};
+use crate::math::{lerp, max, min, sqrt};
 use crate::shapes::{direction, length};
 use crate::{Cloth, Error, Vector3};
 
@@ -351,8 +351,7 @@ impl Cloth<'_> {
             let (ax, ay, az) = (number(NORMAL), number(NORMAL + 1), number(NORMAL + 2));
             let (bx, by, bz) = (number(TO + NORMAL), number(TO + NORMAL + 1), number(TO + NORMAL + 2));
             for i in 0..BLOCK {
-                let mix = |a: f32, b: f32| a + (b - a) * share;
-                let n = V3::new(mix(ax[i], bx[i]), mix(ay[i], by[i]), mix(az[i], bz[i]));
+                let n = V3::new(lerp(ax[i], bx[i], share), lerp(ay[i], by[i], share), lerp(az[i], bz[i], share));
                 let behind = (radius[i] + distance[i]) / sqrt(max(n.dot(&n), 1e-12));
                 let from = V3::new(x[i], y[i], z[i]) + n * behind;
                 held[i] |= u32::from(from.dot(&from) <= radius[i] * radius[i] * 1.0001);

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::contact::{UP, at, turned, with};
 use common::{Random, bare, bits, cloth, positions, snapshot, squares, steps, velocities};
 use taut::Vector3;
 use taut::{Cloth, ClothDef, ColliderDef, ColliderId, Error, Families, Features, MAX_COLLIDERS, Pose, Shape};
@@ -25,23 +26,6 @@ fn loose(rows: u32, columns: u32, def: &ClothDef) -> Cloth<'static> {
     c.set_stiffness_uniform([0.0; 4]).unwrap();
     c
 }
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::at(Vector3::new(x, y, z))
-}
-
-/// Turned by an angle in rad around an axis of length 1.
-fn turned(position_m: Vector3<f64>, axis: [f64; 3], angle: f64) -> Pose {
-    let (s, c) = (angle / 2.0).sin_cos();
-    let [x, y, z] = axis.map(|a| (a * s) as f32);
-    Pose { position_m, rotation: [x, y, z, c as f32] }
-}
-
-fn with(shape: Shape, pose: Pose, friction: f32, thickness_m: f32) -> ColliderDef {
-    ColliderDef { shape, pose, friction, thickness_m }
-}
-
-const UP: Shape = Shape::Plane { normal: [0.0, 1.0, 0.0] };
 
 /// A cloth that falls on a floor lies exactly a thickness above it, at rest.
 #[test]

@@ -46,20 +46,7 @@ fn twins(seed: u64, rows: u32, columns: u32) -> (Cloth<'static>, Twin) {
         }
     }
     assert_eq!(c.budget().unwrap().cut_fraction, 0.0);
-    for i in 0..n {
-        let at = twin.x[i] + r.vector(0.03);
-        c.set_position(i, at).unwrap();
-        twin.x[i] = at;
-        if twin.inverse[i] > 0.0 {
-            let v = r.vector(0.5);
-            c.set_velocity(i, v).unwrap();
-            twin.v[i] = v;
-        }
-    }
-    for p in &mut twin.pins {
-        p.from = twin.x[p.particle];
-        p.to = p.from;
-    }
+    twin.crumple(&mut c, &mut r);
     (c, twin)
 }
 

@@ -242,6 +242,26 @@ fn a_strip_that_is_cut_off_falls() {
     }
 }
 
+/// Two pieces that touch with a corner: the diagonal between them is no link, since both other corners of its cell are absent.
+#[test]
+fn pieces_that_touch_with_a_corner_do_not_hold_each_other() {
+    let features = Features(Features::STRAIN_LIMIT.0 | Features::MASK.0);
+    let def = ClothDef { features, damping_per_s: 0.0, speed_limit: 0.0, ..ClothDef::default() };
+    let mut c = cloth(&squares(9, 9, 0.05, Families::ALL), &def);
+    c.set_stiffness_uniform([500.0; 4]).unwrap();
+    let mask: Vec<u8> = (0..81).map(|i| u8::from((i / 9 < 5) == (i % 9 < 5))).collect();
+    c.set_mask(&mask).unwrap();
+    for p in 0..5 {
+        c.pin(p).unwrap();
+    }
+    let before = c.position(80).unwrap().y;
+    for _ in 0..30 {
+        c.step().unwrap();
+    }
+    let fallen = before - c.position(80).unwrap().y;
+    assert!((fallen - 0.5 * 9.81 * 0.25 * (1.0 + 1.0 / 480.0)).abs() < 1e-3, "{fallen} m");
+}
+
 /// The same bits everywhere: printed once on x86_64. And a replay from a snapshot gives them again.
 #[test]
 fn golden_and_replay() {

@@ -1,6 +1,7 @@
 //! What several tests of core share: short ways to make cloths, seeded random numbers, reading and placing particles.
 #![allow(dead_code)] // every test program uses its own part
 
+pub mod contact;
 pub mod lattice;
 pub mod twin;
 

@@ -1,8 +1,9 @@
 //! The cloth written down as the paper has it, one particle and one spring after the other, in f32: eq. 1 (springs), eq. 2
 //! (outer forces), eq. 17 (symplectic Euler). No padding, no lanes, no rows; the order of the sums is that of core.
 
+use super::Random;
 use super::lattice::{Family, Lattice};
-use taut::{ClothDef, Grid, Vector3};
+use taut::{Cloth, ClothDef, Grid, Vector3};
 
 /// The springs of a particle in the order in which they are summed: rows and columns to the other end.
 pub const ORDER: [(isize, isize); 12] =
@@ -32,6 +33,24 @@ pub struct Twin {
 }
 
 impl Twin {
+    /// Puts cloth and twin alike at random places near where they are, at random speeds; pins move along.
+    pub fn crumple(&mut self, c: &mut Cloth<'_>, r: &mut Random) {
+        for i in 0..self.x.len() {
+            let at = self.x[i] + r.vector(0.03);
+            c.set_position(i, at).expect("a particle");
+            self.x[i] = at;
+            if self.inverse[i] > 0.0 {
+                let v = r.vector(0.5);
+                c.set_velocity(i, v).expect("a particle");
+                self.v[i] = v;
+            }
+        }
+        for p in &mut self.pins {
+            p.from = self.x[p.particle];
+            p.to = p.from;
+        }
+    }
+
     /// A flat sheet at rest whose springs have the mean of the field at their two ends; `field` is
     /// `[channel][row][column]` of the grid's size: warp, weft, shear, bend. Nothing is cut.
     pub fn new(grid: &Grid, def: &ClothDef, x: Vec<Vector3<f32>>, field: &[f32]) -> Twin {
