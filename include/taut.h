@@ -478,11 +478,12 @@ typedef struct {
     float hinge_fraction;
 } taut_budget_report;
 
-// Where a collider is.
+// Where something is in the world and how it is turned: a collider, the frame of a cloth.
 typedef struct {
-    // Position in the world in m, at most 1e6 from the cloth's origin along each axis.
+    // Position in m: of a collider at most 1e6 from the cloth's origin along each axis, of a frame at most 1e12 in size.
     double position_m[3];
-    // Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
+    // Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. Of a frame only its changes count (the local axes stay those of the
+    // world): 0, 0, 0, 1 is how the cloth was made.
     float rotation[4];
 } taut_pose;
 
@@ -533,15 +534,6 @@ typedef struct {
     // Which gusts: they are a function of the seed and the step index alone. Default 0.
     uint32_t seed;
 } taut_air;
-
-// Where a cloth's frame is in the world.
-typedef struct {
-    // Position in m, each at most 1e12 in size: the origin of the local frame.
-    double position_m[3];
-    // Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. The local axes stay those of the world: only changes of the rotation
-    // count. 0, 0, 0, 1 is how the cloth was made.
-    float rotation[4];
-} taut_frame;
 
 // The positions of a cloth without a copy: particle (row, column) is number row * row_stride + column of x, y and z, in m
 // in the local frame; add origin_m for the world. Valid until the next call that is handed the cloth without const.
@@ -1008,7 +1000,7 @@ TAUT_API taut_result taut_cloth_air(const taut_cloth *cloth, taut_air *out);
 // Threads: changes the cloth.
 TAUT_API
 taut_result taut_cloth_set_frame(taut_cloth *cloth,
-                                 const taut_frame *frame,
+                                 const taut_pose *frame,
                                  float linear_inertia,
                                  float angular_inertia);
 
@@ -1020,7 +1012,7 @@ taut_result taut_cloth_set_frame(taut_cloth *cloth,
 // Threads: changes the cloth.
 TAUT_API
 taut_result taut_cloth_teleport(taut_cloth *cloth,
-                                const taut_frame *frame);
+                                const taut_pose *frame);
 
 // Moves the origin of the local frame, x, y, z in m, each at most 1e12 in size, and the cloth with all that is attached to it:
 // for engines that shift their world. The local state and its hash stay, to the bit.
@@ -1036,7 +1028,7 @@ taut_result taut_cloth_set_origin(taut_cloth *cloth,
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: reads the cloth.
-TAUT_API taut_result taut_cloth_frame(const taut_cloth *cloth, taut_frame *out);
+TAUT_API taut_result taut_cloth_frame(const taut_cloth *cloth, taut_pose *out);
 
 // Steps one frame: 1 / rate_hz seconds in `substeps` equal substeps. Pins move to their targets, forces act. The same
 // calls give the same bits on every machine, whatever floating-point modes the engine has set.

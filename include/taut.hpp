@@ -246,19 +246,19 @@ public:
 
     // Frame.
 
-    [[nodiscard]] taut_result set_frame(const taut_frame &frame, float linear_inertia, float angular_inertia) noexcept
+    [[nodiscard]] taut_result set_frame(const taut_pose &frame, float linear_inertia, float angular_inertia) noexcept
     {
         return taut_cloth_set_frame(handle_, &frame, linear_inertia, angular_inertia);
     }
 
-    [[nodiscard]] taut_result teleport(const taut_frame &frame) noexcept { return taut_cloth_teleport(handle_, &frame); }
+    [[nodiscard]] taut_result teleport(const taut_pose &frame) noexcept { return taut_cloth_teleport(handle_, &frame); }
 
     [[nodiscard]] taut_result set_origin(const double (&origin_m)[3]) noexcept
     {
         return taut_cloth_set_origin(handle_, origin_m);
     }
 
-    [[nodiscard]] taut_result frame(taut_frame &out) const noexcept { return taut_cloth_frame(handle_, &out); }
+    [[nodiscard]] taut_result frame(taut_pose &out) const noexcept { return taut_cloth_frame(handle_, &out); }
 
     // Pins and particles.
 

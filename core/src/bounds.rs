@@ -33,7 +33,7 @@ impl Cloth<'_> {
             }
         }
         // the sum that `world_position` forms: it rounds all positions alike, so none falls out of the box
-        let world = |p: [f32; 3]| (Vector3::from(p).cast::<f64>() + Vector3::from(self.pose.position)).into();
+        let world = |p: [f32; 3]| (Vector3::from(p).cast::<f64>() + Vector3::from(self.frame.position)).into();
         Bounds { low_m: world(low), high_m: world(high) }
     }
 }

@@ -3,7 +3,7 @@ use crate::budget::{self, BudgetReport};
 use crate::colliders::Colliders;
 use crate::field::{self, FieldView};
 use crate::force::{Planes, Springs};
-use crate::frame::Pose;
+use crate::frame::Frame;
 use crate::implicit::Implicit;
 use crate::layout::{Layout, PIN_NUMBERS, copy, read, take, write};
 use crate::levels::Levels;
@@ -55,7 +55,7 @@ pub struct Cloth<'a> {
     pub(crate) ambient: Ambient,
     pub(crate) sleep: Sleep,
     /// Where the local frame is in the world.
-    pub(crate) pose: Pose,
+    pub(crate) frame: Frame,
     /// Digest of masses and mask.
     pub(crate) matter: u64,
     pub(crate) step_index: u64,
@@ -138,7 +138,7 @@ impl<'a> Cloth<'a> {
             implicit: Implicit::new(&layout, b)?,
             ambient: Ambient::new(def),
             sleep: Sleep::new(def),
-            pose: Pose::new(def),
+            frame: Frame::new(def),
             matter: 0,
             step_index: 0,
             report: BudgetReport::default(),
@@ -188,7 +188,7 @@ impl<'a> Cloth<'a> {
         self.colliders.numbers.fill(0.0);
         self.reset_targets();
         self.implicit.reset();
-        self.pose = Pose::new(&self.def);
+        self.frame = Frame::new(&self.def);
         self.step_index = 0;
         self.stale = true;
         self.wake();
@@ -329,7 +329,7 @@ impl<'a> Cloth<'a> {
         PositionView {
             xyz: [&*self.x.x, &*self.x.y, &*self.x.z].map(|p| p.get(from..).unwrap_or(&[])),
             row_stride: self.layout.stride,
-            origin_m: self.pose.position,
+            origin_m: self.frame.position,
         }
     }
 
@@ -347,7 +347,7 @@ impl<'a> Cloth<'a> {
     /// Position of a particle in the world in m. Error: [`Error::NoSuchParticle`].
     pub fn world_position(&self, particle: usize) -> Result<Vector3<f64>, Error> {
         let local = self.position(particle)?;
-        Ok(in_default_environment(|| local.cast::<f64>() + Vector3::from(self.pose.position)))
+        Ok(in_default_environment(|| local.cast::<f64>() + Vector3::from(self.frame.position)))
     }
 
     /// Puts a particle somewhere, in the local frame in m, at rest; a pinned one with its pin.
@@ -447,7 +447,7 @@ impl<'a> Cloth<'a> {
     /// World to local, refused where f32 could not hold it well.
     pub(crate) fn to_local(&self, world_m: Vector3<f64>) -> Result<[f32; 3], Error> {
         in_default_environment(|| {
-            let d = world_m - Vector3::from(self.pose.position);
+            let d = world_m - Vector3::from(self.frame.position);
             check_reach(d)?;
             Ok([d.x as f32, d.y as f32, d.z as f32])
         })

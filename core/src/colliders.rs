@@ -5,7 +5,7 @@ use crate::frame::Motion;
 use crate::layout::{Layout, read, take, write};
 use crate::math::{round16, sqrt};
 use crate::shapes::{SHAPE_NUMBERS, Shape};
-use crate::{Cloth, Error, Vector3};
+use crate::{Cloth, Error, Pose, Vector3};
 
 /// Most colliders of a cloth.
 pub const MAX_COLLIDERS: usize = 32;
@@ -34,22 +34,6 @@ const GENERATIONS: f32 = 16_777_215.0;
 /// ids again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct ColliderId(pub u32);
-
-/// Where a collider is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Position in the world in m, at most 1e6 from the cloth's origin along each axis.
-    pub position_m: Vector3<f64>,
-    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
-    pub rotation: [f32; 4],
-}
-
-impl Pose {
-    /// At a place, not turned.
-    pub fn at(position_m: Vector3<f64>) -> Pose {
-        Pose { position_m, rotation: [0.0, 0.0, 0.0, 1.0] }
-    }
-}
 
 /// What a collider is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -282,7 +266,7 @@ impl Cloth<'_> {
     pub fn collider(&self, id: ColliderId) -> Result<ColliderDef, Error> {
         let place = self.colliders.find(id)?;
         let c = self.colliders.get(place).ok_or(Error::NoSuchCollider)?;
-        let position_m = c.from.position.cast::<f64>() + Vector3::from(self.pose.position);
+        let position_m = c.from.position.cast::<f64>() + Vector3::from(self.frame.position);
         let pose = Pose { position_m, rotation: c.from.rotation };
         Ok(ColliderDef { shape: c.shape, pose, friction: c.friction, thickness_m: c.thickness })
     }

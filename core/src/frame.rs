@@ -7,36 +7,27 @@
 
 use crate::layout::read;
 use crate::pins::Pin;
-use crate::{Cloth, ClothDef, Error, Vector3};
-
-/// Where a cloth's frame is in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Position in m, each at most 1e12 in size.
-    pub position_m: [f64; 3],
-    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. Only its changes count: 0, 0, 0, 1 is how the cloth was made.
-    pub rotation: [f32; 4],
-}
+use crate::{Cloth, ClothDef, Error, Pose, Vector3};
 
 /// Longest way of a frame in one call, in m along an axis.
 const REACH_M: f64 = 1e6;
 
 /// The frame as it is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pose {
+pub(crate) struct Frame {
     pub position: [f64; 3],
     /// x, y, z, w of length 1.
     pub rotation: [f64; 4],
 }
 
-impl Pose {
+impl Frame {
     /// That of the definition.
-    pub fn new(def: &ClothDef) -> Pose {
-        Pose { position: def.origin_m, rotation: [0.0, 0.0, 0.0, 1.0] }
+    pub fn new(def: &ClothDef) -> Frame {
+        Frame { position: def.origin_m, rotation: [0.0, 0.0, 0.0, 1.0] }
     }
 
-    fn of(frame: &Frame) -> Result<Pose, Error> {
-        let [x, y, z, w] = frame.rotation.map(f64::from);
+    fn of(pose: &Pose) -> Result<Frame, Error> {
+        let [x, y, z, w] = pose.rotation.map(f64::from);
         let length = libm::sqrt(x * x + y * y + z * z + w * w);
         if !length.is_finite() {
             return Err(Error::NotFinite);
@@ -44,11 +35,11 @@ impl Pose {
         if !(1e-3..=1e3).contains(&length) {
             return Err(Error::OutOfRange);
         }
-        Pose { position: frame.position_m, rotation: [x, y, z, w].map(|q| q / length) }.checked()
+        Frame { position: pose.position_m.into(), rotation: [x, y, z, w].map(|q| q / length) }.checked()
     }
 
-    /// Checks a pose that may be anything. Errors: [`Error::NotFinite`], [`Error::OutOfRange`].
-    pub fn checked(self) -> Result<Pose, Error> {
+    /// Checks a frame that may be anything. Errors: [`Error::NotFinite`], [`Error::OutOfRange`].
+    pub fn checked(self) -> Result<Frame, Error> {
         if !self.numbers().iter().all(|x| x.is_finite()) {
             return Err(Error::NotFinite);
         }
@@ -64,8 +55,8 @@ impl Pose {
         [a, b, c, x, y, z, w]
     }
 
-    pub fn from_numbers([a, b, c, x, y, z, w]: [f64; 7]) -> Pose {
-        Pose { position: [a, b, c], rotation: [x, y, z, w] }
+    pub fn from_numbers([a, b, c, x, y, z, w]: [f64; 7]) -> Frame {
+        Frame { position: [a, b, c], rotation: [x, y, z, w] }
     }
 }
 
@@ -82,8 +73,8 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// From one pose to another; `linear` and `angular` are the shares (0 to 1) that are felt.
-    fn new(from: &Pose, to: &Pose, linear: f64, angular: f64) -> Motion {
+    /// From one frame to another; `linear` and `angular` are the shares (0 to 1) that are felt.
+    fn new(from: &Frame, to: &Frame, linear: f64, angular: f64) -> Motion {
         let way = [0, 1, 2].map(|a| to.position[a] - from.position[a]);
         let quaternion = turn(from.rotation, to.rotation, 1.0 - angular);
         Motion {
@@ -175,19 +166,19 @@ impl Cloth<'_> {
     ///
     /// Errors: [`Error::NotFinite`], [`Error::OutOfRange`] (a share, the length of the quaternion, or a way of more than 1e6
     /// m along an axis: that is a teleport).
-    pub fn set_frame(&mut self, frame: &Frame, linear_inertia: f32, angular_inertia: f32) -> Result<(), Error> {
-        let to = Pose::of(frame)?;
+    pub fn set_frame(&mut self, frame: &Pose, linear_inertia: f32, angular_inertia: f32) -> Result<(), Error> {
+        let to = Frame::of(frame)?;
         let shares = [linear_inertia, angular_inertia];
         if shares.iter().any(|s| s.is_nan()) {
             return Err(Error::NotFinite);
         }
-        let motion = Motion::new(&self.pose, &to, linear_inertia.into(), angular_inertia.into());
+        let motion = Motion::new(&self.frame, &to, linear_inertia.into(), angular_inertia.into());
         if shares.iter().any(|s| !(0.0..=1.0).contains(s)) || motion.way.iter().any(|d| d.abs() > REACH_M) {
             return Err(Error::OutOfRange);
         }
-        if to != self.pose {
+        if to != self.frame {
             self.move_local(&motion, true);
-            self.pose = to;
+            self.frame = to;
             self.wake();
         }
         Ok(())
@@ -197,14 +188,14 @@ impl Cloth<'_> {
     /// A change of place leaves the local state bit-identical; a turn rounds positions and velocities to f32.
     ///
     /// Errors: [`Error::NotFinite`], [`Error::OutOfRange`].
-    pub fn teleport(&mut self, frame: &Frame) -> Result<(), Error> {
-        let to = Pose::of(frame)?;
-        let motion = Motion { felt: [0.0; 3], way: [0.0; 3], ..Motion::new(&self.pose, &to, 0.0, 0.0) };
+    pub fn teleport(&mut self, frame: &Pose) -> Result<(), Error> {
+        let to = Frame::of(frame)?;
+        let motion = Motion { felt: [0.0; 3], way: [0.0; 3], ..Motion::new(&self.frame, &to, 0.0, 0.0) };
         if motion.turn.is_some() {
             self.move_local(&motion, false);
             self.wake();
         }
-        self.pose = to;
+        self.frame = to;
         Ok(())
     }
 
@@ -213,13 +204,13 @@ impl Cloth<'_> {
     ///
     /// Errors: [`Error::NotFinite`], [`Error::OutOfRange`] (above 1e12 m).
     pub fn set_origin(&mut self, origin_m: Vector3<f64>) -> Result<(), Error> {
-        self.pose = Pose { position: origin_m.into(), ..self.pose }.checked()?;
+        self.frame = Frame { position: origin_m.into(), ..self.frame }.checked()?;
         Ok(())
     }
 
     /// Where the frame is.
-    pub fn frame(&self) -> Frame {
-        Frame { position_m: self.pose.position, rotation: self.pose.rotation.map(|q| q as f32) }
+    pub fn frame(&self) -> Pose {
+        Pose { position_m: self.frame.position.into(), rotation: self.frame.rotation.map(|q| q as f32) }
     }
 
     /// Carries all that is local along. The targets of pins stay in the world, or are carried too.

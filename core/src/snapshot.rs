@@ -20,7 +20,7 @@
 //! worlds differently agree on the local state.
 
 use crate::ambient::Ambient;
-use crate::frame::Pose;
+use crate::frame::Frame;
 use crate::layout::{PIN_NUMBERS, read};
 use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64, in_default_environment};
@@ -49,7 +49,7 @@ impl Cloth<'_> {
     fn flags(&self) -> u32 {
         (if self.has_pull { PULL } else { 0 })
             | (if self.ambient.changed { AMBIENT } else { 0 })
-            | (if self.pose != Pose::new(&self.def) { FRAME } else { 0 })
+            | (if self.frame != Frame::new(&self.def) { FRAME } else { 0 })
     }
 
     fn size_of_snapshot(&self, pins: usize, flags: u32) -> usize {
@@ -125,7 +125,7 @@ impl Cloth<'_> {
         put(&mut rest, &(self.pins.count as u32).to_le_bytes());
         put(&mut rest, &self.flags().to_le_bytes());
         if self.flags() & FRAME != 0 {
-            for number in self.pose.numbers() {
+            for number in self.frame.numbers() {
                 put(&mut rest, &number.to_le_bytes());
             }
         }
@@ -182,10 +182,10 @@ impl Cloth<'_> {
             return Err(Error::Checksum);
         }
         let mut from = HEADER;
-        let mut pose = Pose::new(&self.def);
+        let mut frame = Frame::new(&self.def);
         if flags & FRAME != 0 {
             let number = |i: usize| f64::from_bits(u64_at(body, HEADER + 8 * i));
-            pose = Pose::from_numbers([number(0), number(1), number(2), number(3), number(4), number(5), number(6)])
+            frame = Frame::from_numbers([number(0), number(1), number(2), number(3), number(4), number(5), number(6)])
                 .checked()?;
             from += FRAME_BYTES;
         }
@@ -232,7 +232,7 @@ impl Cloth<'_> {
         let drag = self.drag_share();
         self.ambient = ambient;
         self.stale |= drag != self.drag_share();
-        self.pose = pose;
+        self.frame = frame;
         let parts = [
             &mut *self.colliders.numbers,
             &mut *self.targets.planes,

@@ -8,7 +8,7 @@ use std::cell::Cell;
 
 use taut::field::FieldView;
 use taut::{
-    Cloth, ClothDef, ColliderDef, Families, Features, Frame, Pose, Shape, Solver, Target, TargetLimit, Vector3, baked,
+    Cloth, ClothDef, ColliderDef, Families, Features, Pose, Shape, Solver, Target, TargetLimit, Vector3, baked,
 };
 
 struct Counting;
@@ -101,7 +101,7 @@ fn allocates_nothing(def: &ClothDef) {
         for frame in 0..20 {
             c.move_pin(0, Vector3::new(0.01 * f64::from(frame), 0.0, 0.0)).unwrap();
             c.add_force(300, Vector3::new(0.0, 0.0, 0.1)).unwrap();
-            let moved = Frame { position_m: [0.1 * f64::from(frame), 0.0, 0.0], rotation: [0.0, 0.1, 0.0, 1.0] };
+            let moved = Pose { position_m: [0.1 * f64::from(frame), 0.0, 0.0].into(), rotation: [0.0, 0.1, 0.0, 1.0] };
             c.set_frame(&moved, 0.5, 0.5).unwrap();
             c.pin_force(0).unwrap();
             assert_eq!(c.pin_forces().count(), c.pin_count());
@@ -127,7 +127,7 @@ fn allocates_nothing(def: &ClothDef) {
             c.each_structural_strain(|_, _, strain| assert!(strain.is_finite()));
             assert!(c.positions().xyz[0].len() > 20);
         }
-        c.teleport(&Frame { position_m: [1e9, 0.0, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] }).unwrap();
+        c.teleport(&Pose { position_m: [1e9, 0.0, 0.0].into(), rotation: [0.0, 0.0, 0.0, 1.0] }).unwrap();
         c.set_origin(Vector3::zeros()).unwrap();
         c.wake();
         c.pin(usize::MAX).unwrap_err();

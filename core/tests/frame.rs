@@ -3,17 +3,17 @@
 mod common;
 
 use common::{Random, bare, bits, cloth, near, positions, snapshot, squares, steps, stir, velocities};
-use taut::{Cloth, ClothDef, Error, Families, Features, Frame, Vector3};
+use taut::{Cloth, ClothDef, Error, Families, Features, Pose, Vector3};
 
 const STILL: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-fn at(position_m: [f64; 3]) -> Frame {
-    Frame { position_m, rotation: STILL }
+fn at(position_m: [f64; 3]) -> Pose {
+    Pose { position_m: position_m.into(), rotation: STILL }
 }
 
 /// Turned about y by an angle.
-fn about_y(position_m: [f64; 3], angle: f64) -> Frame {
-    Frame { position_m, rotation: [0.0, (angle / 2.0).sin() as f32, 0.0, (angle / 2.0).cos() as f32] }
+fn about_y(position_m: [f64; 3], angle: f64) -> Pose {
+    Pose { position_m: position_m.into(), rotation: [0.0, (angle / 2.0).sin() as f32, 0.0, (angle / 2.0).cos() as f32] }
 }
 
 fn turned_y(p: Vector3<f64>, angle: f64) -> Vector3<f64> {
@@ -130,7 +130,9 @@ fn angular_inertia_is_the_share_of_the_turn_that_is_felt() {
         assert!((x - turned_y(local, angle)).norm() < 1e-6, "{inertia}: {x}");
         assert!((v - turned_y(Vector3::new(1.0, 0.5, 0.0), angle)).norm() < 1e-6, "{inertia}: {v}");
         let now = c.frame();
-        assert!((f64::from(now.rotation[1].abs()) - 0.4f64.sin()).abs() < 1e-6 && now.position_m == home);
+        assert!(
+            (f64::from(now.rotation[1].abs()) - 0.4f64.sin()).abs() < 1e-6 && now.position_m == Vector3::from(home)
+        );
         // the same frame again is no motion
         let before = bits(&c);
         c.set_frame(&frame, 0.0, 0.0).unwrap();
@@ -214,7 +216,7 @@ fn a_turning_teleport_adds_no_strain_and_no_speed() {
     let energy = c.kinetic_energy_j();
     let s = 0.5f32.sqrt();
     // a quarter about x: (x, y, z) becomes (x, -z, y)
-    c.teleport(&Frame { position_m: [3.0, 0.0, 0.0], rotation: [s, 0.0, 0.0, s] }).unwrap();
+    c.teleport(&Pose { position_m: [3.0, 0.0, 0.0].into(), rotation: [s, 0.0, 0.0, s] }).unwrap();
     let quarter = |p: Vector3<f32>| Vector3::new(p.x, -p.z, p.y);
     for i in 0..81 {
         assert!((c.position(i).unwrap() - quarter(x[i])).norm() < 3e-7);
@@ -271,7 +273,7 @@ fn bad_frames_are_refused() {
     let mut c = cape(&ClothDef::default());
     let hash = c.state_hash();
     let (nan, still) = (f64::NAN, at([0.0; 3]));
-    let turned = |rotation| Frame { position_m: [0.0; 3], rotation };
+    let turned = |rotation| Pose { position_m: [0.0; 3].into(), rotation };
     let cases = [
         (at([nan, 0.0, 0.0]), 0.0, 0.0, Error::NotFinite),
         (turned([0.0, f32::NAN, 0.0, 1.0]), 0.0, 0.0, Error::NotFinite),

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{bits, cloth, positions, snapshot, squares, steps, velocities};
-use taut::{Cloth, ClothDef, Error, Families, Features, Frame, Hash64, StepFlags, Vector3};
+use taut::{Cloth, ClothDef, Error, Families, Features, Hash64, Pose, StepFlags, Vector3};
 
 fn def() -> ClothDef {
     ClothDef {
@@ -102,12 +102,12 @@ const WAKING: [(&str, Call); 19] = [
         mask[60] = 0;
         c.set_mask(&mask).unwrap();
     }),
-    ("set_frame", |c| c.set_frame(&Frame { position_m: [0.01, 0.0, 0.0], ..c.frame() }, 1.0, 1.0).unwrap()),
+    ("set_frame", |c| c.set_frame(&Pose { position_m: [0.01, 0.0, 0.0].into(), ..c.frame() }, 1.0, 1.0).unwrap()),
     ("set_frame without inertia", |c| {
-        c.set_frame(&Frame { position_m: [0.01, 0.0, 0.0], ..c.frame() }, 0.0, 0.0).unwrap();
+        c.set_frame(&Pose { position_m: [0.01, 0.0, 0.0].into(), ..c.frame() }, 0.0, 0.0).unwrap();
     }),
-    ("a turn", |c| c.set_frame(&Frame { rotation: [0.0, 0.1, 0.0, 1.0], ..c.frame() }, 1.0, 0.0).unwrap()),
-    ("a turning teleport", |c| c.teleport(&Frame { rotation: [0.1, 0.0, 0.0, 1.0], ..c.frame() }).unwrap()),
+    ("a turn", |c| c.set_frame(&Pose { rotation: [0.0, 0.1, 0.0, 1.0], ..c.frame() }, 1.0, 0.0).unwrap()),
+    ("a turning teleport", |c| c.teleport(&Pose { rotation: [0.1, 0.0, 0.0, 1.0], ..c.frame() }).unwrap()),
     ("reset", |c| c.reset()),
     ("load_stiffness", |c| {
         let mut file = [0; 1024];
@@ -149,7 +149,7 @@ fn what_changes_nothing_lets_it_sleep() {
     let m = c.particle_mass_kg();
     c.set_masses(&[m; 64]).unwrap();
     c.set_frame(&c.frame(), 1.0, 1.0).unwrap();
-    c.teleport(&Frame { position_m: [1e6, 0.0, 0.0], ..c.frame() }).unwrap();
+    c.teleport(&Pose { position_m: [1e6, 0.0, 0.0].into(), ..c.frame() }).unwrap();
     c.set_origin(Vector3::new(5.0, 0.0, 0.0)).unwrap();
     c.budget().unwrap();
     c.pin_force(0).unwrap();

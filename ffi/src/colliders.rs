@@ -1,4 +1,4 @@
-use taut_core::{Pose as CorePose, Shape, Vector3};
+use taut_core::Shape;
 
 use crate::handle::{ClothHandle, change, look};
 use crate::pointer::{Out, value};
@@ -27,12 +27,6 @@ pub extern "C" fn taut_collider_def_default(shape: u32) -> ColliderDef {
     }
 }
 
-impl From<&Pose> for CorePose {
-    fn from(p: &Pose) -> CorePose {
-        CorePose { position_m: Vector3::from(p.position_m), rotation: p.rotation }
-    }
-}
-
 /// # Safety
 /// As [`value`].
 unsafe fn checked(def: *const ColliderDef) -> Result<taut_core::ColliderDef, Code> {
@@ -48,7 +42,7 @@ unsafe fn checked(def: *const ColliderDef) -> Result<taut_core::ColliderDef, Cod
         s if s == ColliderShape::TAUT_SHAPE_BOX as u32 => Shape::Box { half_m: d.half_m },
         _ => return Err(Code::TAUT_ERROR_OUT_OF_RANGE),
     };
-    Ok(taut_core::ColliderDef { shape, pose: (&d.pose).into(), friction: d.friction, thickness_m: d.thickness_m })
+    Ok(taut_core::ColliderDef { shape, pose: d.pose.into(), friction: d.friction, thickness_m: d.thickness_m })
 }
 
 /// Adds a collider, of which a cloth has up to TAUT_MAX_COLLIDERS. Needs TAUT_FEATURE_COLLIDERS. out_id is its id: a value,
@@ -88,7 +82,7 @@ pub unsafe extern "C" fn taut_cloth_collider_move(cloth: *mut ClothHandle, id: u
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends a pose.
     unsafe {
         change(cloth, |cloth| {
-            let pose = value(pose)?.into();
+            let pose = (*value(pose)?).into();
             Ok(cloth.move_collider(taut_core::ColliderId(id), &pose)?)
         })
     }
@@ -104,7 +98,7 @@ pub unsafe extern "C" fn taut_cloth_collider_set_pose(cloth: *mut ClothHandle, i
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends a pose.
     unsafe {
         change(cloth, |cloth| {
-            let pose = value(pose)?.into();
+            let pose = (*value(pose)?).into();
             Ok(cloth.set_collider_pose(taut_core::ColliderId(id), &pose)?)
         })
     }
@@ -130,8 +124,7 @@ pub unsafe extern "C" fn taut_cloth_collider_pose(cloth: *const ClothHandle, id:
     unsafe {
         look(cloth, |cloth| {
             let out = Out::new(out)?;
-            let pose = cloth.collider(taut_core::ColliderId(id))?.pose;
-            out.set(Pose { position_m: pose.position_m.into(), rotation: pose.rotation });
+            out.set(cloth.collider(taut_core::ColliderId(id))?.pose.into());
             Ok(())
         })
     }

@@ -3,7 +3,7 @@ use taut_core::Vector3;
 use crate::handle::{ClothHandle, change, look};
 use crate::pointer::{Out, value};
 use crate::result::Code;
-use crate::types::Frame;
+use crate::types::Pose;
 
 /// The frame is at a new place at the end of the next step: that of the character whom the cloth follows. linear_inertia and
 /// angular_inertia, 0 to 1, are the shares of its shift and its turn since the last frame that the cloth feels; with the rest
@@ -16,7 +16,7 @@ use crate::types::Frame;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn taut_cloth_set_frame(
     cloth: *mut ClothHandle,
-    frame: *const Frame,
+    frame: *const Pose,
     linear_inertia: f32,
     angular_inertia: f32,
 ) -> Code {
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn taut_cloth_set_frame(
 /// TAUT_ERROR_OUT_OF_RANGE.
 /// Threads: changes the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_teleport(cloth: *mut ClothHandle, frame: *const Frame) -> Code {
+pub unsafe extern "C" fn taut_cloth_teleport(cloth: *mut ClothHandle, frame: *const Pose) -> Code {
     // SAFETY: the caller hands in a cloth that nobody else uses, and lends a frame.
     unsafe { change(cloth, |cloth| Ok(cloth.teleport(&(*value(frame)?).into())?)) }
 }
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn taut_cloth_set_origin(cloth: *mut ClothHandle, origin_m
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: reads the cloth.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn taut_cloth_frame(cloth: *const ClothHandle, out: *mut Frame) -> Code {
+pub unsafe extern "C" fn taut_cloth_frame(cloth: *const ClothHandle, out: *mut Pose) -> Code {
     // SAFETY: the caller lends a cloth that nobody changes, and a place for the answer.
     unsafe {
         look(cloth, |cloth| {

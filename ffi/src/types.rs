@@ -235,17 +235,6 @@ pub struct Bounds {
     pub high_m: [f64; 3],
 }
 
-/// Where a cloth's frame is in the world.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct Frame {
-    /// Position in m, each at most 1e12 in size: the origin of the local frame.
-    pub position_m: [f64; 3],
-    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. The local axes stay those of the world: only changes of the rotation
-    /// count. 0, 0, 0, 1 is how the cloth was made.
-    pub rotation: [f32; 4],
-}
-
 /// What the budget made of the stiffness.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -262,13 +251,14 @@ pub struct BudgetReport {
     pub hinge_fraction: f32,
 }
 
-/// Where a collider is.
+/// Where something is in the world and how it is turned: a collider, the frame of a cloth.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Pose {
-    /// Position in the world in m, at most 1e6 from the cloth's origin along each axis.
+    /// Position in m: of a collider at most 1e6 from the cloth's origin along each axis, of a frame at most 1e12 in size.
     pub position_m: [f64; 3],
-    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long.
+    /// Rotation as a quaternion x, y, z, w, 1e-3 to 1e3 long. Of a frame only its changes count (the local axes stay those of the
+    /// world): 0, 0, 0, 1 is how the cloth was made.
     pub rotation: [f32; 4],
 }
 
@@ -402,15 +392,15 @@ impl From<taut_core::baked::Fabric> for Fabric {
     }
 }
 
-impl From<taut_core::Frame> for Frame {
-    fn from(f: taut_core::Frame) -> Frame {
-        Frame { position_m: f.position_m, rotation: f.rotation }
+impl From<taut_core::Pose> for Pose {
+    fn from(p: taut_core::Pose) -> Pose {
+        Pose { position_m: p.position_m.into(), rotation: p.rotation }
     }
 }
 
-impl From<Frame> for taut_core::Frame {
-    fn from(f: Frame) -> taut_core::Frame {
-        taut_core::Frame { position_m: f.position_m, rotation: f.rotation }
+impl From<Pose> for taut_core::Pose {
+    fn from(p: Pose) -> taut_core::Pose {
+        taut_core::Pose { position_m: p.position_m.into(), rotation: p.rotation }
     }
 }
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "require.h"
 #include "taut.h"
 
 enum {
@@ -21,14 +22,6 @@ static _Alignas(TAUT_GRID_ALIGN) unsigned char grid_block[TAUT_GRID_BYTES];
 static _Alignas(TAUT_CLOTH_ALIGN) unsigned char cloth_block[BYTES];
 static float skin[COUNT][6]; // position, normal
 static float distance[COUNT];
-
-#define REQUIRE(condition)                                   \
-    do {                                                     \
-        if (!(condition)) {                                  \
-            printf("line %d: %s\n", __LINE__, #condition);   \
-            return 1;                                        \
-        }                                                    \
-    } while (0)
 
 int main(void)
 {

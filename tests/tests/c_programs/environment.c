@@ -6,20 +6,13 @@
 #include <xmmintrin.h>
 #endif
 
+#include "require.h"
 #include "taut.h"
 
 static _Alignas(TAUT_GRID_ALIGN) unsigned char grid_block[TAUT_GRID_BYTES];
 static _Alignas(TAUT_CLOTH_ALIGN) unsigned char
     cloth_block[TAUT_CLOTH_BYTES(32, 32, TAUT_FAMILY_ALL, TAUT_FEATURE_NONE, 2)];
 static unsigned char file_bytes[64 * 1024];
-
-#define REQUIRE(condition)                                                       \
-    do {                                                                         \
-        if (!(condition)) {                                                      \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #condition);              \
-            return 1;                                                            \
-        }                                                                        \
-    } while (0)
 
 int main(int argc, char **argv)
 {

@@ -2,15 +2,9 @@
 // handles, moves, vertex attributes, the sizes of storage.
 #include <stdio.h>
 
+#include "require.h"
 #include "taut.hpp"
 
-#define REQUIRE(condition)                                             \
-    do {                                                               \
-        if (!(condition)) {                                            \
-            printf("line %d: %s\n", __LINE__, #condition);             \
-            return 1;                                                  \
-        }                                                              \
-    } while (0)
 #define DONE(call) REQUIRE((call) == TAUT_OK)
 #define EMPTY(call) REQUIRE((call) == TAUT_ERROR_NULL_POINTER)
 
@@ -147,7 +141,7 @@ int surroundings(const taut::Grid &grid)
     DONE(cloth.collider_remove(id));
     REQUIRE(read.collider_pose(id, there) == TAUT_ERROR_NO_SUCH_COLLIDER);
 
-    taut_frame frame;
+    taut_pose frame;
     DONE(read.frame(frame));
     frame.position_m[0] = 0.1;
     DONE(cloth.set_frame(frame, 0.5f, 0.5f));

@@ -126,7 +126,6 @@ fn structures_and_values_are_those_of_rust() {
         limit_diagonal
     );
     structure!(t, types::FieldInfo, "taut_field", seed, description_hash, rows, columns, fabric, reserved);
-    structure!(t, types::Frame, "taut_frame", position_m, rotation);
     structure!(t, types::Strain, "taut_strain", largest, mean);
     structure!(t, types::PositionView, "taut_position_view", origin_m, x, y, z, row_stride, rows, columns);
     for error in Error::ALL {

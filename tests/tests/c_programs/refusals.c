@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "require.h"
 #include "taut.h"
 
 enum { SIDE = 8, BYTES = TAUT_CLOTH_BYTES(SIDE, SIDE, TAUT_FAMILY_ALL, TAUT_FEATURE_PULL, 4) };
@@ -43,14 +44,6 @@ static int calls;
         ++calls;                                                                                       \
         if (result_ != TAUT_OK) {                                                                      \
             printf("line %d: %s\n  is %s\n", __LINE__, #call, taut_result_name(result_));              \
-            return 1;                                                                                  \
-        }                                                                                              \
-    } while (0)
-
-#define REQUIRE(condition)                                                                             \
-    do {                                                                                               \
-        if (!(condition)) {                                                                            \
-            printf("line %d: %s\n", __LINE__, #condition);                                             \
             return 1;                                                                                  \
         }                                                                                              \
     } while (0)
@@ -250,7 +243,7 @@ static int handles(void)
     taut_bounds bounds;
     taut_position_view view;
     uint32_t flags[2] = {7, 7};
-    taut_frame frame = {{0, 0, 0}, {0, 0, 0, 1}};
+    taut_pose frame = {{0, 0, 0}, {0, 0, 0, 1}};
     float force[3] = {7, 7, 7};
     for (int i = 0; i < 3; ++i) {
         taut_cloth *c = wrong[i];
@@ -364,7 +357,7 @@ static int arguments(void)
     REFUSED(TAUT_ERROR_FEATURE_OFF, taut_cloth_set_mask(cloth, none, bytes));
     REFUSED(TAUT_ERROR_SHAPE, taut_cloth_set_mask(cloth, 1, bytes));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_mask(cloth, none, NULL));
-    taut_frame frame = {{0, 0, 0}, {0, 0, 0, 0}};
+    taut_pose frame = {{0, 0, 0}, {0, 0, 0, 0}};
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_frame(cloth, NULL));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_set_frame(cloth, NULL, 0, 0));
     REFUSED(TAUT_ERROR_MISALIGNED, taut_cloth_teleport(cloth, off(bytes)));
