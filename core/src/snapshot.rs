@@ -192,22 +192,22 @@ impl Cloth<'_> {
         let (numbers, _) = body.get(from..).unwrap_or(&[]).as_chunks::<4>();
         let number = |i: usize| numbers.get(i).map_or(0.0, |b| f32::from_le_bytes(*b));
         self.check_numbers(&number, numbers.len(), pins)?;
+        // where the parts begin
+        let mut parts_at = self.grid.particles() * if pull { 9 } else { 6 };
         let mut ambient = Ambient::new(&self.def);
         if flags & AMBIENT != 0 {
-            let from = self.grid.particles() * if pull { 9 } else { 6 };
-            for (i, to) in ambient.numbers.iter_mut().enumerate() {
-                *to = number(from + i);
+            for to in &mut ambient.numbers {
+                *to = number(parts_at);
+                parts_at += 1;
             }
             ambient.changed = true;
             ambient.check(&self.def)?;
         }
-        let surroundings = if flags & AMBIENT != 0 { ambient.numbers.len() } else { 0 };
-        let parts = (if pull { 9 } else { 6 }) * self.grid.particles() + surroundings;
         if self.layout.max_colliders > 0 {
-            crate::colliders::check_stored(&number, parts)?;
+            crate::colliders::check_stored(&number, parts_at)?;
         }
         if self.layout.targets {
-            crate::targets::check_stored(&number, parts + self.colliders.numbers.len(), &self.layout)?;
+            crate::targets::check_stored(&number, parts_at + self.colliders.numbers.len(), &self.layout)?;
         }
 
         let l = self.layout;
@@ -224,9 +224,6 @@ impl Cloth<'_> {
                 next += l.columns;
             }
         }
-        if flags & AMBIENT != 0 {
-            next += ambient.numbers.len();
-        }
         // the budget depends on them
         self.stale |= self.ambient.damping() != ambient.damping() || self.ambient.rest_scale() != ambient.rest_scale();
         let drag = self.drag_share();
@@ -239,6 +236,7 @@ impl Cloth<'_> {
             self.implicit.state_mut(),
             self.sleep.state_mut(),
         ];
+        let mut next = parts_at;
         for part in parts {
             for to in part {
                 *to = number(next);
