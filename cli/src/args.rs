@@ -8,6 +8,7 @@ use taut::Budget;
 use taut_lab::scene::Scene;
 
 use crate::failure::{self, Failure};
+use crate::measure::Measure;
 use crate::numbers::{self, GridSize, Sides};
 
 const EXAMPLES: &str = "Examples:
@@ -35,6 +36,9 @@ pub enum Command {
     Correct(Correct),
     /// Tells what a generator file is.
     Info(Info),
+    /// Measures cost and error; `taut measure --help` lists what.
+    #[command(subcommand)]
+    Measure(Measure),
 }
 
 /// The cloth and where its stiffness comes from.
@@ -42,7 +46,8 @@ pub enum Command {
 pub struct Cloth {
     /// The fabric in words, for example "heavy blue denim".
     pub description: String,
-    /// hang2 (two top corners pinned), edge (top row pinned) or hang1 (one corner pinned).
+    /// hang2 (two top corners pinned), edge (top row pinned), hang1 (one corner pinned), swing, curtain, drape (on a
+    /// sphere), flag or cusick (a disc on a pedestal).
     #[arg(long, default_value = "hang2")]
     pub scene: Scene,
     /// Particles, each side 2 to 4096.
@@ -116,7 +121,7 @@ pub fn answer(e: &clap::Error) -> Result<(), Failure> {
     match e.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => failure::print(&e.render().to_string()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
-            Err(Failure::new("no command: give drape, correct or info (taut --help tells more)"))
+            Err(Failure::new("no command: give drape, correct, info or measure (taut --help tells more)"))
         }
         _ => Err(Failure::new(short(&e.render().to_string()))),
     }
@@ -202,7 +207,7 @@ mod tests {
             ("taut drape silk --density -0.1", "--density"),
             ("taut drape silk --seed -1", "--seed"),
             ("taut drape silk --seed 1.5", "--seed"),
-            ("taut drape silk --scene moon", "hang2, edge or hang1"),
+            ("taut drape silk --scene moon", "flag or cusick"),
             ("taut drape silk --budget big", "tuned or certified"),
             ("taut correct silk", "--out"),
         ] {

@@ -73,6 +73,7 @@ fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
         budget: args.budget,
         density_kg_m2,
         seconds: args.seconds,
+        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
         seed: cloth.seed,
     })
 }

@@ -12,6 +12,7 @@ mod correct;
 mod drape;
 mod failure;
 mod info;
+mod measure;
 mod model;
 mod notes;
 mod numbers;
@@ -37,6 +38,7 @@ fn run() -> Result<(), Failure> {
         Command::Drape(args) => drape::run(args),
         Command::Correct(args) => correct::run(args),
         Command::Info(args) => info::run(args),
+        Command::Measure(what) => measure::run(what),
     }
 }
 

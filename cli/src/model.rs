@@ -28,7 +28,8 @@ pub fn load(path: Option<&Path>) -> Result<Generator, Failure> {
 /// The field of a fabric for a scene. Words that did not count are named on stderr.
 pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
     let columns = args.grid.columns as usize;
-    let pins: Vec<(usize, usize)> = args.scene.pins(columns).into_iter().map(|p| (p / columns, p % columns)).collect();
+    let pins: Vec<(usize, usize)> =
+        args.scene.pins(args.grid.rows as usize, columns).into_iter().map(|p| (p / columns, p % columns)).collect();
     let request = Request {
         description: &args.description,
         seed: args.seed,
@@ -67,12 +68,8 @@ fn quoted(words: &[String]) -> String {
 }
 
 /// A scene for people.
-pub fn scene_text(scene: Scene) -> &'static str {
-    match scene {
-        Scene::Hang2 => "hang2 (two corners pinned)",
-        Scene::Edge => "edge (top row pinned)",
-        Scene::Hang1 => "hang1 (one corner pinned)",
-    }
+pub fn scene_text(scene: Scene) -> String {
+    format!("{scene} ({})", scene.about())
 }
 
 #[cfg(test)]

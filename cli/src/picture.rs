@@ -24,7 +24,8 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
         .style(colour::style(&report.description))
         .footer(notes::notes(report).join(" "));
     for (i, (outcome, setting)) in outcomes.iter().zip(&report.settings).enumerate() {
-        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?.with_pins(&scene.pins(columns))?;
+        let grid =
+            Grid::new(&outcome.positions, rows, columns, width_m, height_m)?.with_pins(&scene.pins(rows, columns))?;
         let mut panel = Panel::new(notes::heading(setting.name), grid);
         for line in lines(setting, report.grid) {
             panel = panel.line(line);

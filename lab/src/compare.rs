@@ -41,6 +41,8 @@ pub struct Case {
     pub density_kg_m2: f32,
     /// Simulated time in s.
     pub seconds: f32,
+    /// Bending rigidity in N m of the scenes that bend by hinges ([`Scene::features`]).
+    pub hinge_rigidity_n_m: f32,
     /// Seed of the random stiffness.
     pub seed: u64,
 }
@@ -135,24 +137,25 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
         height_m: case.size_m[1],
         ..GridDef::default()
     })?;
-    let mut def = ClothDef {
+    let shape = (case.rows as usize, case.columns as usize);
+    let def = ClothDef {
         rate_hz: case.rate_hz,
         substeps: case.substeps,
         density_kg_m2: case.density_kg_m2,
         budget: case.budget,
         inertia_radius_m: if setting.has_inertia() { INERTIA_RADIUS * case.size_m[0].max(case.size_m[1]) } else { 0.0 },
         inertia_max: INERTIA_MAX,
-        max_pins: case.scene.max_pins(case.columns as usize),
+        hinge_rigidity_n_m: case.hinge_rigidity_n_m,
         ..ClothDef::default()
     };
+    let mut def = case.scene.fit(&def, shape.0, shape.1);
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let field = setting.field(case);
-    let shape = (case.rows as usize, case.columns as usize);
     if let Setting::Reference(_) = setting {
         // the substeps at which the budget cuts nothing, with a fifth more for the motion
         let mut cloth = Cloth::create(&grid, &def, &mut block)?;
         cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, &field)?);
-        case.scene.set_up(&mut cloth)?;
+        case.scene.set_up(&mut cloth, 0)?;
         let needed = 1.2 / (cloth.budget()?.max_dt_s * case.rate_hz);
         def.substeps = (needed.ceil() as u32).clamp(case.substeps.min(MOST_SUBSTEPS), MOST_SUBSTEPS);
     }
@@ -161,7 +164,7 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
     let field = if *setting == Setting::Random {
         // scale so that the largest is what the budget would give a uniform cloth
         cloth.set_stiffness_uniform([1.0, 1.0, 1.0, 1.0])?;
-        case.scene.set_up(&mut cloth)?;
+        case.scene.set_up(&mut cloth, 0)?;
         let b = cloth.budget()?;
         let k = (b.max_dt_s / b.dt_s).powi(2);
         scaled = field.iter().map(|f| f * k).collect();
@@ -170,13 +173,14 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
         &field
     };
     cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, field)?);
-    case.scene.set_up(&mut cloth)?;
+    case.scene.set_up(&mut cloth, 0)?;
     let budget = cloth.budget()?;
 
     let frames = (case.seconds * case.rate_hz).round().max(1.0) as u32;
     let (mut finite, mut peak) = (true, 0.0f32);
     let mut cpu = std::time::Duration::ZERO;
     for frame in 0..frames {
+        case.scene.drive(&mut cloth, f64::from(frame + 1) / f64::from(case.rate_hz), 0)?;
         let start = ThreadTime::now();
         finite &= !cloth.step()?.contains(taut::StepFlags::NON_FINITE);
         cpu += start.elapsed();

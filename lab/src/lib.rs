@@ -3,6 +3,8 @@
 pub mod bound;
 pub mod compare;
 pub mod fabric;
+pub mod ledger;
 pub mod metrics;
 pub mod picture;
+pub mod plot;
 pub mod scene;

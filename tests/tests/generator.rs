@@ -13,7 +13,7 @@ static GENERATOR: LazyLock<Generator> =
     LazyLock::new(|| Generator::from_bytes(include_bytes!("../../onnx/generator.onnx")).expect("the file that ships"));
 
 fn ask(description: &str, scene: Scene, seed: u64) -> Correction {
-    let pins: Vec<(usize, usize)> = scene.pins(32).into_iter().map(|p| (p / 32, p % 32)).collect();
+    let pins: Vec<(usize, usize)> = scene.pins(32, 32).into_iter().map(|p| (p / 32, p % 32)).collect();
     GENERATOR.correct(&Request { seed, pins: &pins, ..Request::new(description) }).expect(description)
 }
 
@@ -34,6 +34,7 @@ fn hang(description: &str, scene: Scene, substeps: u32) -> [Outcome; 3] {
         budget: Budget::Tuned,
         density_kg_m2: correction.density_kg_m2,
         seconds: 8.0,
+        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
         seed: 0,
     };
     let fabric = Fabric::named(description).expect("a fabric that the tables know");

@@ -6,7 +6,7 @@ use taut_train::nets::GRID;
 
 #[test]
 fn training_and_runtime_have_one_map_of_the_pins() {
-    let mut sets: Vec<Vec<usize>> = Scene::ALL.iter().map(|scene| scene.pins(GRID)).collect();
+    let mut sets: Vec<Vec<usize>> = Scene::ALL.iter().map(|scene| scene.pins(GRID, GRID)).collect();
     sets.push(Vec::new());
     sets.push(vec![0, 400, 401, GRID * GRID - 1]);
     for pins in sets {

@@ -35,7 +35,7 @@ fn arguments() {
         ("--density", "-0.3", "--density"),
         ("--density", "NaN", "--density"),
         ("--seed", "-1", "--seed"),
-        ("--scene", "moon", "hang2, edge or hang1"),
+        ("--scene", "moon", "flag or cusick"),
         ("--budget", "huge", "tuned or certified"),
         ("--colour", "red", "--colour"),
     ] {

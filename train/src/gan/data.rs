@@ -222,7 +222,7 @@ fn example(
             let def = SceneDef {
                 density_kg_m2: f64::from(fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(*substeps)),
-                ..SceneDef::hung(&springs, &scene.pins(config.grid))
+                ..SceneDef::hung(&springs, &scene.pins(config.grid, config.grid))
             };
             let mut cloth = cloth::Scene::new(&springs, def)?;
             cloth.set_start(Some(start.clone()))?;
@@ -247,6 +247,7 @@ fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainE
         budget: Budget::Tuned,
         density_kg_m2: fabric.density_kg_m2,
         seconds: REFERENCE_SECONDS,
+        hinge_rigidity_n_m: fabric.hinge_rigidity_n_m,
         seed: 0,
     };
     let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ()).map_err(TrainError::part)?;

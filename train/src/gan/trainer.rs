@@ -445,7 +445,7 @@ fn scalar(t: &Tensor<1>) -> f64 {
 
 fn pins_of(e: &Example) -> Vec<usize> {
     // at the net's own resolution
-    e.scene.pins(GRID)
+    e.scene.pins(GRID, GRID)
 }
 
 /// A few pins somewhere, none, or a whole row, for the first stage: what the words mean does not depend on them.

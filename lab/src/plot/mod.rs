@@ -1,0 +1,9 @@
+//! Plots: lines and points over one or two logarithmic axes, and maps of coloured cells, as PNG and as SVG.
+
+mod canvas;
+mod chart;
+mod error;
+
+pub use canvas::Figure;
+pub use chart::{Axis, Chart, Mark, Series};
+pub use error::PlotError;
