@@ -1,5 +1,6 @@
 //! Scenes, fabrics, metrics and pictures, shared by the program, the tests, the benches and training.
 
+pub mod atlas;
 pub mod bound;
 pub mod compare;
 pub mod fabric;
