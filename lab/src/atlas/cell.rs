@@ -48,14 +48,8 @@ pub enum Variant {
 
 impl Variant {
     /// All of them, in the order of the columns.
-    pub const ALL: [Variant; 6] = [
-        Variant::Tuned,
-        Variant::Certified,
-        Variant::Tethers,
-        Variant::Levels,
-        Variant::ImplicitEuler,
-        Variant::Bdf2,
-    ];
+    pub const ALL: [Variant; 6] =
+        [Variant::Tuned, Variant::Certified, Variant::Tethers, Variant::Levels, Variant::ImplicitEuler, Variant::Bdf2];
 
     /// The name in tables.
     pub fn name(self) -> &'static str {

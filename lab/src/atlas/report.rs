@@ -11,7 +11,7 @@ use super::run::{Class, Effort, Finding, run};
 use crate::plot::{CellMap, CellMaps, Places};
 
 /// Cells of the full product.
-const SAMPLES: u64 = 1500;
+const SAMPLES: u64 = 1000;
 const QUICK_SAMPLES: u64 = 100;
 
 /// A cell and where it belongs.
@@ -34,7 +34,7 @@ pub struct Atlas {
 }
 
 impl Atlas {
-    /// The cells of all maps and of the sample: about 5,500, or for the quick atlas about 1,500.
+    /// The cells of all maps and of the sample: about 6,000, or for the quick atlas about 2,000.
     pub fn new(quick: bool) -> Atlas {
         let mut entries = Vec::new();
         for map in &MAPS {
@@ -57,9 +57,9 @@ impl Atlas {
     /// What a cell may cost.
     pub fn effort(&self) -> Effort {
         if self.quick {
-            Effort { seconds: 2.0, particle_steps: 1e6 }
+            Effort { seconds: 4.0, particle_steps: 1e6 }
         } else {
-            Effort { seconds: 5.0, particle_steps: 4e7 }
+            Effort { seconds: 5.0, particle_steps: 1e7 }
         }
     }
 
@@ -219,7 +219,8 @@ mod tests {
         let effort = Effort { seconds: 0.25, particle_steps: 2e5 };
         let maps = Atlas::new(true);
         let some = maps.entries().iter().filter(|e| e.cell.frame_cost() < 2e5).step_by(11);
-        let cells: Vec<Cell> = some.map(|e| e.cell).chain((2001..2200).map(sample).filter(|c| c.frame_cost() < 2e5)).collect();
+        let cells: Vec<Cell> =
+            some.map(|e| e.cell).chain((2001..2200).map(sample).filter(|c| c.frame_cost() < 2e5)).collect();
         assert!(cells.len() > 200, "{} cells", cells.len());
         let mut classes = HashSet::new();
         for cell in &cells {

@@ -4,12 +4,13 @@
 //! gravity and the pins account for,
 //!
 //! ```text
-//! E_kin(t) <= W(t) + 2 e^(-c t) (E_kin(0) + E_pins) + min(2 e^(-c t) E_spring(0), M (20 m/s)^2 / 2) + M (0.1 m/s)^2 / 2
+//! E_kin(t) <= 1.1 W(t) + 2 e^(-c t) (E_kin(0) + E_springs(0) + E_pins) + M (0.1 m/s)^2 / 2
 //! ```
 //!
-//! with W the work of gravity so far (its largest value), c the damping, M the mass, E_spring(0) the springs' energy at the
-//! start with the stiffness that the budget can have left at most, and E_pins = 2 M (jump * rate)^2 + 10 k jump^2 / 2 from
-//! the frame of the jump on; and (2) whole: no structural spring is longer than twice its rest length.
+//! with W the work of gravity so far (its largest value), c the damping, M the mass, E_springs(0) the springs' energy at
+//! the start with the stiffness that the budget can have left at most, and E_pins = 2 M (jump * rate)^2 + 10 k jump^2 / 2
+//! from the frame of the jump on; and (2) whole: no structural spring is longer than twice its rest length. What limits
+//! on length do to a start that is too long is not accounted for: x += D and v += D/dt, so at a tiny dt they fling it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -79,7 +80,7 @@ pub struct Effort {
 }
 
 /// Least frames of a run, whatever they cost.
-const LEAST_FRAMES: u32 = 4;
+const LEAST_FRAMES: u32 = 1;
 
 /// A cell that takes longer than this has hung.
 const HUNG: Duration = Duration::from_secs(600);
@@ -204,7 +205,7 @@ fn attempt(cell: &Cell, effort: &Effort, mut tick: impl FnMut(f32)) -> Result<Fi
         let allowed = accounts.allowed(&cloth, 1.0 / f64::from(cell.rate_hz));
         let s = f64::from(cloth.strain().largest);
         peak = peak.max(s);
-        if frame >= frames - frames / 4 {
+        if frame >= frames - frames.div_ceil(4) {
             strain = strain.max(s);
             speed2 = speed2.max(2.0 * kinetic / accounts.mass);
             ratio = ratio.max(kinetic / allowed);
@@ -302,8 +303,7 @@ struct Accounts {
     since_jump: f64,
 }
 
-/// Speeds in m/s of the bound at the head of this file.
-const ELASTIC_M_S: f64 = 20.0;
+/// The speed in m/s of the bound at the head of this file.
 const STILL_M_S: f64 = 0.1;
 
 impl Accounts {
@@ -340,12 +340,10 @@ impl Accounts {
         self.since_jump += frame_s;
         self.fallen = self.fallen.max(work(&self.weights, cloth) - self.height);
         let left = |t: f64| 2.0 * (-self.damping * t).exp();
-        let of_speed = |v: f64| 0.5 * self.mass * v * v;
-        self.fallen
-            + left(self.time) * self.kinetic
+        1.1 * self.fallen
+            + left(self.time) * (self.kinetic + self.springs)
             + left(self.since_jump) * self.pins
-            + (left(self.time) * self.springs).min(of_speed(ELASTIC_M_S))
-            + of_speed(STILL_M_S)
+            + 0.5 * self.mass * STILL_M_S * STILL_M_S
     }
 }
 
@@ -471,7 +469,7 @@ mod tests {
         let c = Cell { stiffness_n_m: 0.0, damping_per_s: 0.0, clamps: false, ..Variant::Certified.cell() };
         let found = run(&c, &Effort { seconds: 1.0, ..SHORT }, |_| {});
         let ratio = found.energy_ratio.unwrap();
-        assert!((0.98..1.0).contains(&ratio), "{ratio}");
+        assert!((0.89..0.91).contains(&ratio), "{ratio}");
         let speed = found.rms_speed_m_s.unwrap();
         assert!((speed - 9.81).abs() < 0.02, "{speed} m/s after 1 s");
     }

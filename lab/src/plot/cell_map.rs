@@ -159,14 +159,7 @@ impl<B: DrawingBackend> Pen<'_, B> {
     }
 
     /// A text around a place; turned it reads upwards, and `anchor` is that of the text before it is turned.
-    fn text(
-        &self,
-        text: &str,
-        at: (i32, i32),
-        size: i32,
-        (h, v): (HPos, VPos),
-        turned: bool,
-    ) -> Result<(), PlotError> {
+    fn text(&self, text: &str, at: (i32, i32), size: i32, (h, v): (HPos, VPos), turned: bool) -> Result<(), PlotError> {
         let turn = if turned { FontTransform::Rotate270 } else { FontTransform::None };
         let style = TextStyle::from((FONT, size)).transform(turn).pos(Pos::new(h, v));
         self.root.draw_text(text, &style, at).map_err(drawing)
