@@ -1,6 +1,9 @@
 //! `taut measure atlas`: where the cloth stays stable, where it is only bounded, and what is refused.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
 
 use taut_lab::atlas::{Atlas, Class, Finding, MAPS, Variant, run as run_cell};
 use taut_lab::ledger::Ledger;
@@ -31,22 +34,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut atlas = Atlas::new(args.quick);
     let rows = args.out.join(if args.quick { "atlas-quick.jsonl" } else { "atlas.jsonl" });
     let mut ledger: Ledger<Finding> = Ledger::open(&rows, &atlas.header()).map_err(Failure::new)?;
-    let entries = atlas.entries().to_vec();
-    let progress = Progress::new(entries.len());
-    for (i, entry) in entries.iter().enumerate() {
-        let key = entry.cell.key();
-        let found = match ledger.get(&key) {
-            Some(found) => found.clone(),
-            None => {
-                let found = run_cell(&entry.cell, &atlas.effort(), |share| progress.at(i, entry.map, share));
-                ledger.add(&key, found.clone()).map_err(Failure::new)?;
-                found
-            }
-        };
-        atlas.add(key, found);
-        progress.at(i, entry.map, 1.0);
-    }
-    drop(progress);
+    measure(&mut atlas, &mut ledger)?;
 
     let json = serde_json::to_string_pretty(&atlas.json()).map_err(Failure::new)? + "\n";
     let png = atlas.maps().png().map_err(Failure::new)?;
@@ -64,6 +52,47 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None => Ok(()),
         Some(first) => Err(Failure::new(format_args!("{} cells are broken, the first: {first}", broken.len()))),
     }
+}
+
+/// Runs the cells that the ledger does not have, on all cores.
+fn measure(atlas: &mut Atlas, ledger: &mut Ledger<Finding>) -> Result<(), Failure> {
+    let entries = atlas.entries().to_vec();
+    let mut missing: Vec<usize> = Vec::new();
+    let mut seen = HashSet::new();
+    for (i, entry) in entries.iter().enumerate() {
+        let key = entry.cell.key();
+        match ledger.get(&key) {
+            Some(found) => atlas.add(key, found.clone()),
+            // some cells stand in more than one map
+            None if seen.insert(key) => missing.push(i),
+            None => {}
+        }
+    }
+    let progress = Progress::new(missing.len());
+    let (effort, next) = (atlas.effort(), AtomicUsize::new(0));
+    let (send, receive) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            let (send, next, entries, missing) = (send.clone(), &next, &entries, &missing);
+            scope.spawn(move || {
+                while let Some(i) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let found = run_cell(&entries[*i].cell, &effort, |_| {});
+                    // nobody listens any more after a row that could not be written
+                    if send.send((*i, found)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(send);
+        for (done, (i, found)) in receive.into_iter().enumerate() {
+            let key = entries[i].cell.key();
+            ledger.add(&key, found.clone()).map_err(Failure::new)?;
+            atlas.add(key, found);
+            progress.at(done, entries[i].map, 1.0);
+        }
+        Ok(())
+    })
 }
 
 /// How many cells ended in each class: by variant, by map, in all.

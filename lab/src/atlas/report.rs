@@ -11,7 +11,7 @@ use super::run::{Class, Effort, Finding, run};
 use crate::plot::{CellMap, CellMaps, Places};
 
 /// Cells of the full product.
-const SAMPLES: u64 = 1000;
+const SAMPLES: u64 = 600;
 const QUICK_SAMPLES: u64 = 100;
 
 /// A cell and where it belongs.
@@ -59,7 +59,7 @@ impl Atlas {
         if self.quick {
             Effort { seconds: 4.0, particle_steps: 1e6 }
         } else {
-            Effort { seconds: 5.0, particle_steps: 1e7 }
+            Effort { seconds: 5.0, particle_steps: 4e6 }
         }
     }
 

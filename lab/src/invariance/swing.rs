@@ -11,7 +11,7 @@ use crate::scene::Scene;
 const SIDE: u32 = 16;
 
 /// First zero of the Bessel function J0.
-const J0_ZERO: f64 = 2.404_825_557_695_773;
+pub(super) const J0_ZERO: f64 = 2.404_825_557_695_773;
 
 /// Side-ways at the lower edge at the start, in m: small, so that the swing is linear.
 const AMPLITUDE_M: f64 = 0.05;
@@ -43,7 +43,7 @@ fn chain_period_s(links: u32, length_m: f64) -> f64 {
 }
 
 /// J0 by its series, exact enough for arguments up to 3.
-fn j0(x: f64) -> f64 {
+pub(super) fn j0(x: f64) -> f64 {
     let q = -0.25 * x * x;
     let mut term = 1.0;
     (1..20).fold(1.0, |sum, k| {
