@@ -84,14 +84,14 @@ impl Axis {
     pub fn name(self, i: usize) -> String {
         match self {
             Axis::Step => format!("{} x {}", STEPS[i].0, STEPS[i].1),
-            Axis::Stiffness => short(f64::from(STIFFNESS[i])),
-            Axis::MassRatio => short(f64::from(MASSES[i])),
-            Axis::Damping => short(f64::from(DAMPING[i])),
-            Axis::Gravity => short(f64::from(GRAVITY[i])),
-            Axis::Speed => short(f64::from(SPEEDS[i])),
-            Axis::World => short(WORLD[i]),
-            Axis::Local => short(f64::from(LOCAL[i])),
-            Axis::Jump => short(JUMPS[i]),
+            Axis::Stiffness => short(STIFFNESS[i]),
+            Axis::MassRatio => short(MASSES[i]),
+            Axis::Damping => short(DAMPING[i]),
+            Axis::Gravity => short(GRAVITY[i]),
+            Axis::Speed => short(SPEEDS[i]),
+            Axis::World => short(WORLD[i] as f32),
+            Axis::Local => short(LOCAL[i]),
+            Axis::Jump => short(JUMPS[i] as f32),
             Axis::Shape => format!("{} x {}", SHAPES[i].0, SHAPES[i].1),
             Axis::Start => Start::ALL[i].name().into(),
         }
@@ -116,8 +116,13 @@ impl Axis {
 }
 
 /// A number as short as a map wants it.
-fn short(x: f64) -> String {
-    if x != 0.0 && !(1e-3..1e4).contains(&x.abs()) { format!("{x:.0e}") } else { format!("{x}") }
+fn short(x: f32) -> String {
+    if x != 0.0 && !(1e-3..1e4).contains(&x.abs()) {
+        let text = format!("{x:.1e}");
+        text.replace(".0e", "e")
+    } else {
+        format!("{x}")
+    }
 }
 
 /// A map over two axes, drawn for every [`Variant`].
@@ -208,3 +213,23 @@ pub fn sample(seed: u64) -> Cell {
 
 /// Most weighted particle-steps of a frame of a sampled cell.
 const FRAME: f64 = 2e6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_short() {
+        for map in &MAPS {
+            for axis in [map.x, map.y] {
+                for i in 0..axis.count() {
+                    assert!((1..=16).contains(&axis.name(i).chars().count()), "{}", axis.name(i));
+                }
+            }
+        }
+        assert_eq!(
+            [0.1, 9.81, 1e-40, 990_000.0, 1000.0, -1.0].map(short),
+            ["0.1", "9.81", "1e-40", "9.9e5", "1000", "-1"]
+        );
+    }
+}
