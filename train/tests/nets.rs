@@ -29,7 +29,7 @@ fn judge(d: &Discriminator, channels: usize, batch: usize, seed: u64, device: &D
 fn the_generator_gives_a_field_and_a_fabric_in_tanh_range() {
     let device = Device::flex();
     for width in [1, 4, 16] {
-        let g = GeneratorConfig { width }.init(3, &device).expect("width");
+        let g = GeneratorConfig { width, levels: true }.init(3, &device).expect("width");
         let out = generate(&g, 3, 1, &device);
         assert_eq!((out.field.dims(), out.fabric.dims()), ([3, 4, 32, 32], [3, 5]));
         for v in host(out.field).into_iter().chain(host(out.fabric)) {
@@ -53,7 +53,8 @@ const GENERATOR_PARAMETERS: usize = {
     let fifth = (2 * w + 1) * w * 9 + w + 4 * 2 * w;
     let sixth = (w + 1) * 4 * 9 + 4 + 4 * w;
     let fabric = 1024 * 5 + 5;
-    first + skip + second + third + fourth + fifth + sixth + fabric
+    let level = 1024 * 4 + 4;
+    first + skip + second + third + fourth + fifth + sixth + fabric + level
 };
 
 #[test]
@@ -72,9 +73,9 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 }
 
 #[test]
-fn the_fabric_hears_the_sum_of_the_words_and_the_field_only_where_it_points() {
+fn the_fabric_hears_the_sum_of_the_words_and_the_pattern_only_where_it_points() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 4 }.init(5, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: false }.init(5, &device).expect("width");
     let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
     let pins = random([1, 1, 32, 32], 2, &device).abs();
     let once = g.forward(words.clone(), noise.clone(), pins.clone());
@@ -90,10 +91,30 @@ fn the_fabric_hears_the_sum_of_the_words_and_the_field_only_where_it_points() {
 }
 
 #[test]
+fn the_level_of_the_field_hears_the_sum_of_the_words() {
+    let device = Device::flex();
+    let with = GeneratorConfig { width: 4, levels: true }.init(5, &device).expect("width");
+    let without = without_levels(&with);
+    let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
+    let pins = random([1, 1, 32, 32], 2, &device).abs();
+    let pattern = host(without.forward(words.clone(), noise.clone(), pins.clone()).field);
+    let level = host(with.level.as_ref().expect("levels").forward(words.clone()));
+    let field = host(with.forward(words, noise, pins).field);
+    for (i, (p, f)) in pattern.iter().zip(&field).enumerate() {
+        let sum = (p.atanh() + level[i / 1024]).tanh();
+        assert!((sum - f).abs() < 1e-4, "{i}: {sum} {f}");
+    }
+}
+
+fn without_levels(g: &Generator) -> Generator {
+    Generator { level: None, ..g.clone() }
+}
+
+#[test]
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {
-        let g = GeneratorConfig { width: 4 }.init(seed, &device).expect("width");
+        let g = GeneratorConfig { width: 4, levels: true }.init(seed, &device).expect("width");
         let d = DiscriminatorConfig { width: 4, ..Default::default() }.init(seed, &device).expect("width");
         (host(generate(&g, 2, 8, &device).field), host(judge(&d, 1, 2, 8, &device)))
     };
@@ -138,7 +159,7 @@ fn only_a_conditional_discriminator_hears_the_words_and_it_weighs_them_against_t
 #[test]
 fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
     let statistics = |g: &Generator| {
         let g = g.valid();
         (host(g.second.norm.running_mean.value()), host(g.fifth.norm.running_var.value()))
@@ -174,7 +195,7 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
 #[test]
 fn every_weight_of_both_networks_gets_a_gradient() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
     let out = generate(&g, 4, 1, &device);
     let loss = out.field.square().mean() + out.fabric.square().mean() + g.squared_weights().mul_scalar(1e-4);
     let grads = loss.backward();
@@ -204,7 +225,7 @@ fn every_weight_of_both_networks_gets_a_gradient() {
 #[test]
 fn the_sum_of_squares_counts_kernels_and_matrices() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 1 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 1, levels: true }.init(2, &device).expect("width");
     let mut expected = 0.0f64;
     let mut add = |v: Vec<f32>| expected += v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
     add(host(g.first.weight.val()));

@@ -108,7 +108,12 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let fifth = with_pins(g, "fifth", &s4, &m.fifth)?;
     let residual = g.node("fifth.residual", "Add", &[&fifth, &a4], vec![]);
     let a5 = g.node("fifth.active", "Relu", &[&residual], vec![]);
-    let sixth = with_pins(g, "sixth", &a5, &m.sixth)?;
+    let mut sixth = with_pins(g, "sixth", &a5, &m.sixth)?;
+    if let Some(level) = &m.level {
+        let level = g.linear("level", &words, level)?;
+        let level = g.node("level.pixel", "Unsqueeze", &[&level, &axes23], vec![]);
+        sixth = g.node("sixth.levelled", "Add", &[&sixth, &level], vec![]);
+    }
     g.node("field", "Tanh", &[&sixth], vec![]);
 
     g.output("field", &[None, Some(CHANNELS), Some(GRID), Some(GRID)]);

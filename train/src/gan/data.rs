@@ -166,14 +166,20 @@ impl Dataset {
     /// What the net shall say of a fabric: field `[4][32][32]` and fabric [5] in tanh's range. The noise varies the field
     /// smoothly, as two pieces of one fabric differ.
     pub fn target(&self, fabric: &Fabric, noise: &[f32]) -> (Vec<f32>, Vec<f32>) {
-        let k = corrected_stiffness(fabric);
         let mut field = Vec::with_capacity(CHANNELS * GRID * GRID);
         let factors: Vec<f64> =
             (0..GRID * GRID).map(|i| (self.variation * pattern(noise, i / GRID, i % GRID)).exp()).collect();
+        let k = corrected_stiffness(fabric);
         for (k, coding) in k.iter().zip(&self.codings.0) {
             field.extend(factors.iter().map(|f| coding.encode(f64::from(*k) * f) as f32));
         }
         (field, self.numbers(fabric).map(|t| t as f32).to_vec())
+    }
+
+    /// The levels of the field in tanh's range: what it is where the noise varies nothing.
+    pub fn levels(&self, fabric: &Fabric) -> [f64; CHANNELS] {
+        let k = corrected_stiffness(fabric);
+        std::array::from_fn(|i| self.codings.0[i].encode(f64::from(k[i])))
     }
 
     /// The fabric's own numbers, the second part of [`Dataset::target`].

@@ -104,8 +104,10 @@ fn train(
         let report = trainer.step.is_multiple_of(config.report_every) || trainer.step == total;
         if report {
             let sheet = out.join(format!("sheet-{:06}.png", trainer.step));
+            trainer.calibrate();
             let score = trainer.evaluate(Some(&sheet))?;
-            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score }))?;
+            let field = trainer.field_error()?;
+            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score, "evaluation_ln_k": field }))?;
             // where later stages follow, the weights are no candidates: the score sees one drape per fabric on a coarse
             // grid without noise, and not how smooth a field is
             let candidate = stage == config.steps.last() || trainer.step == total;
