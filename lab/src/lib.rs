@@ -2,6 +2,7 @@
 
 pub mod bound;
 pub mod compare;
+pub mod cost;
 pub mod fabric;
 pub mod ledger;
 pub mod metrics;
