@@ -113,7 +113,7 @@ impl Default for TrainConfig {
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
-            steps: StageSteps { matching: 500, positions: 40, adversarial: 20 },
+            steps: StageSteps { matching: 300, positions: 40, adversarial: 20 },
             matching_rate: 2e-3,
             matching_end: 0.03,
             learning_rate: 1e-4,
