@@ -250,6 +250,12 @@ enum taut_result
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
+    // A file cannot be opened or read (taut_generator.h).
+    TAUT_ERROR_FILE = -101,
+    // The generator knows no word of the description (taut_generator.h).
+    TAUT_ERROR_NO_KNOWN_WORD = -102,
+    // The network of a generator file cannot be run, or answers with what is no stiffness (taut_generator.h).
+    TAUT_ERROR_INFERENCE = -103,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
