@@ -84,8 +84,17 @@ fn words_to_a_field_as_in_rust() {
         let mut field = vec![f32::NAN; 4 * 24 * 16];
         let mut fabric = std::mem::zeroed();
         let words = c"heavy blue zorgon denim";
-        let code =
-            taut_generator_correct(g, words.as_ptr(), 7, grid, pins.as_ptr(), 2, field.as_mut_ptr(), field.len(), &mut fabric);
+        let code = taut_generator_correct(
+            g,
+            words.as_ptr(),
+            7,
+            grid,
+            pins.as_ptr(),
+            2,
+            field.as_mut_ptr(),
+            field.len(),
+            &mut fabric,
+        );
         assert_eq!(code, TAUT_OK, "{}", said());
         assert_eq!(said(), "words that do not count: zorgon");
 

@@ -1,4 +1,4 @@
-//! First weights of what is linear in the sum of the word vectors: the numbers of the fabric, the levels of the field.
+//! First weights of what is linear in the words: the numbers of the fabric, the levels of the field.
 //!
 //! Their best weights can be computed: ridge regression on what
 //! the sampled descriptions mean. Descent alone would not get there in the steps of a run, since the vectors of words
@@ -11,15 +11,15 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use super::{Dataset, TrainError};
-use crate::nets::{CHANNELS, DESCRIPTION, FABRIC};
+use crate::nets::{CHANNELS, FABRIC, HEAD_INPUT};
 
 /// Descriptions of the regression: every name with every modifier comes several times.
 const SAMPLES: usize = 4096;
 /// Weight of the squares of the head's weights against the sum of the squared errors. Ten times less fits the samples
 /// better by a third, but then words that stand in no sample say too much.
-const RIDGE: f64 = 0.1;
+const RIDGE: f64 = 0.02;
 
-/// A linear layer over the description: weights [1024][outputs] and biases.
+/// A linear layer over what a head hears of a description: weights [inputs][outputs] and biases.
 pub(super) struct Head {
     weights: Vec<f32>,
     biases: Vec<f32>,
@@ -29,7 +29,8 @@ impl Head {
     /// Puts it in the place of a layer's weights.
     pub fn set(&self, layer: &mut Linear, device: &Device) {
         let outputs = self.biases.len();
-        layer.weight = Param::from_data(TensorData::new(self.weights.clone(), [DESCRIPTION, outputs]), device);
+        let shape = [self.weights.len() / outputs, outputs];
+        layer.weight = Param::from_data(TensorData::new(self.weights.clone(), shape), device);
         layer.bias = Some(Param::from_data(TensorData::new(self.biases.clone(), [outputs]), device));
     }
 }
@@ -41,12 +42,16 @@ pub(super) fn fit(data: &Dataset) -> Result<[Head; 2], TrainError> {
     let (mut inputs, mut numbers, mut levels) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..SAMPLES {
         let (fabric, words) = data.streamed(i as u32);
-        inputs.extend(data.describe(&words).into_iter().map(f64::from));
+        let sum: Vec<f64> = data.describe(&words).into_iter().map(f64::from).collect();
+        let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-9);
+        // as `nets::head_input` has it
+        inputs.extend(sum.iter().map(|x| x / length));
+        inputs.extend(sum);
         numbers.extend(data.numbers(&fabric).map(before_tanh));
         levels.extend(data.levels(&fabric).map(before_tanh));
     }
-    let fit = |outputs: Vec<f64>, n| {
-        ridge(inputs.clone(), outputs, [DESCRIPTION, n], RIDGE).map(|(weights, biases)| Head { weights, biases })
+    let fit = |outputs, n| {
+        ridge(inputs.clone(), outputs, [HEAD_INPUT, n], RIDGE).map(|(weights, biases)| Head { weights, biases })
     };
     Ok([fit(numbers, FABRIC)?, fit(levels, CHANNELS)?])
 }

@@ -24,13 +24,13 @@
 //! The description is scaled to one length first ([`super::description`]): one word says as much as three.
 //!
 //! **Levels**: the stiffness of each family as a whole, added to the sixth layer in front of tanh, comes from a linear
-//! layer over the sum of the words, as the field is logarithmic and each word a factor. The paper has none: there the
-//! convolutions alone must make the level of warp and weft out of the words, and get it wrong by half
-//! (`docs/training.md`); without [`GeneratorConfig::levels`] it is the paper's.
+//! layer over the words, twice: scaled to one length, where "jersey" and "jersey t-shirt" say the same, and as their sum,
+//! where "heavy" is a factor (the field is logarithmic). The paper has none: there the convolutions alone must make the
+//! level of warp and weft out of the words, and get it wrong by half (`docs/training.md`); without
+//! [`GeneratorConfig::levels`] it is the paper's.
 //!
-//! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
-//! whole; it takes the sum of the words as it is, for the logarithms of their factors add up. Noise does not reach it:
-//! another seed is another piece of the same fabric.
+//! Beside the field stands a second linear head over the words alone, which tells what belongs to the fabric as a whole.
+//! Noise does not reach it: another seed is another piece of the same fabric.
 
 use burn::Tensor;
 use burn::module::Module;
@@ -77,8 +77,8 @@ impl GeneratorConfig {
             fourth: Deconvolution::new(&mut b, 3 * w, 0, w, 2),
             fifth: Deconvolution::new(&mut b, 2 * w, 1, w, 1),
             sixth: Deconvolution::new(&mut b, w, 1, CHANNELS, 1),
-            fabric: b.linear(DESCRIPTION, FABRIC),
-            level: self.levels.then(|| b.linear(DESCRIPTION, CHANNELS)),
+            fabric: b.linear(HEAD_INPUT, FABRIC),
+            level: self.levels.then(|| b.linear(HEAD_INPUT, CHANNELS)),
         })
     }
 }
@@ -124,9 +124,9 @@ pub struct Generator {
     pub fifth: Deconvolution,
     /// w + pins to the four channels.
     pub sixth: Deconvolution,
-    /// 1024 to the five numbers of the fabric.
+    /// 2048 ([`head_input`]) to the five numbers of the fabric.
     pub fabric: Linear,
-    /// 1024 to the level of each channel.
+    /// 2048 ([`head_input`]) to the level of each channel.
     pub level: Option<Linear>,
 }
 
@@ -144,9 +144,11 @@ impl Generator {
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
     pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
-        let fabric = tanh(self.fabric.forward(description.clone()));
-        let level = self.level.as_ref().map(|l| l.forward(description.clone()));
-        let v = Tensor::cat(vec![normalise(description), noise], 1);
+        let scaled = normalise(description.clone());
+        let heard = head_input(scaled.clone(), description);
+        let fabric = tanh(self.fabric.forward(heard.clone()));
+        let level = self.level.as_ref().map(|l| l.forward(heard));
+        let v = Tensor::cat(vec![scaled, noise], 1);
         let [batch, n] = v.dims();
         let a1 = relu(self.first.forward(v.reshape([batch, n, 1, 1])));
         let skip = self.skip.forward(a1.clone());
@@ -178,6 +180,17 @@ impl Generator {
             + self.fabric.weight.val().square().sum()
             + self.level.as_ref().map_or(self.fabric.weight.val().zeros_like().sum(), |l| l.weight.val().square().sum())
     }
+}
+
+/// Numbers that the linear heads hear.
+pub const HEAD_INPUT: usize = 2 * DESCRIPTION;
+
+/// Share of the scaled description in [`head_input`]: it makes its length 1, that of a word.
+pub const HEAD_SCALE: f32 = 1.0 / 32.0;
+
+/// What the linear heads hear: the description at length 1, then the sum of the words, [batch, 2048].
+pub fn head_input(scaled: Tensor<2>, sum: Tensor<2>) -> Tensor<2> {
+    Tensor::cat(vec![scaled * HEAD_SCALE, sum], 1)
 }
 
 /// Each pixel becomes a block of `times` x `times` equal ones.
