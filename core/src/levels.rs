@@ -24,6 +24,11 @@ const MOST_CYCLES: u32 = 32;
 /// Cycles that aim at the usual share of the limit.
 const GENTLE_CYCLES: u32 = 3;
 
+/// Rounds, sweeps of each and rows around for what a cycle leaves.
+const LOCAL_ROUNDS: u32 = 4;
+const LOCAL_SWEEPS: u32 = 4;
+const MARGIN: usize = 6;
+
 /// Most levels, the finest included.
 const MOST_LEVELS: usize = 13;
 
@@ -232,7 +237,7 @@ impl Cloth<'_> {
     /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
         // only where a cycle would move nothing it is left out: a threshold above that would kick
-        if self.is_within(c, TARGET, true) && self.tethers_are_slack() {
+        if self.is_within(c, TARGET) && self.tethers_are_slack() {
             return;
         }
         self.begin_limits();
@@ -244,12 +249,31 @@ impl Cloth<'_> {
             // what the first cycles cannot settle is aimed at from farther below
             let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
             self.cycle(c, target, levels, &mut nodes);
-            if self.is_within(c, 1.0, false) {
+            if self.sweep_what_is_left(c, target) {
                 break;
             }
         }
         self.levels.numbers = numbers;
         self.finish_limits(c);
+    }
+
+    /// Sweeps over the rows around those with a structural link beyond its limit, since what a cycle leaves is near the
+    /// pins. Whether none is left.
+    fn sweep_what_is_left(&mut self, c: &Substep, target: f32) -> bool {
+        let (_, end) = self.rows();
+        let mut long = self.long_rows(c, self.rows());
+        for _ in 0..LOCAL_ROUNDS {
+            let Some((first, last)) = long else {
+                break;
+            };
+            // an even row, so that the pairs are those of the whole cloth
+            let first = first.saturating_sub(MARGIN) & !1;
+            let last = (last + 1 + MARGIN).min(end);
+            self.sweep_rows(c, target, (first, last), LOCAL_SWEEPS);
+            // those below the last row may have been moved away from
+            long = self.long_rows(c, (first.saturating_sub(1), (last + 1).min(end)));
+        }
+        long.is_none()
     }
 
     /// All levels once, the coarsest first.

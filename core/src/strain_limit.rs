@@ -5,7 +5,7 @@ use crate::force::Substep;
 use crate::layout::{Layout, copy, take};
 use crate::limit::{Reach, Sheet, Sweeps};
 use crate::simd::{Pass, Vector};
-use crate::within::Within;
+use crate::within::LongRows;
 use crate::{Cloth, Error, simd};
 
 /// The sweeps aim at this share of the limit, since they come close to what they aim at but not below.
@@ -46,15 +46,15 @@ impl Cloth<'_> {
         }
     }
 
-    /// The cloth itself as a sheet whose links may be `target` times their limits.
-    fn sheet(&mut self, c: &Substep, target: f32) -> Sheet<'_> {
+    /// Rows of the cloth, from `first` to `last`, as a sheet whose links may be `target` times their limits.
+    fn sheet(&mut self, c: &Substep, target: f32, (first, last): (usize, usize)) -> Sheet<'_> {
         let l = self.layout;
         let reach = self.reach(c, target, [1, 1], [1, 1]);
         Sheet {
-            rows: l.rows,
+            rows: last.saturating_sub(first) + 1,
             columns: l.columns,
             stride: l.stride,
-            first: l.row(0),
+            first: l.row(first),
             x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
             inverse: self.inverse,
             mask: self.mask,
@@ -62,17 +62,34 @@ impl Cloth<'_> {
         }
     }
 
-    /// Sweeps over the links of the cloth itself.
-    pub(crate) fn sweep_finest(&mut self, c: &Substep, target: f32) {
-        let (width, sweeps) = (self.width, self.def.strain_passes);
-        simd::run(width, Sweeps { sheet: self.sheet(c, target), sweeps });
+    /// First and last row of the cloth.
+    pub(crate) fn rows(&self) -> (usize, usize) {
+        (0, self.layout.rows.saturating_sub(1))
     }
 
-    /// Whether no structural link, and no diagonal where they count, is strained by more than a share of its limit: where so
-    /// with the diagonals, a sweep that aims at the same share moves nothing.
-    pub(crate) fn is_within(&mut self, c: &Substep, share: f32, diagonals: bool) -> bool {
+    /// Sweeps over the links of the cloth itself.
+    pub(crate) fn sweep_finest(&mut self, c: &Substep, target: f32) {
+        self.sweep_rows(c, target, self.rows(), self.def.strain_passes);
+    }
+
+    /// Sweeps over the links of some rows.
+    pub(crate) fn sweep_rows(&mut self, c: &Substep, target: f32, rows: (usize, usize), sweeps: u32) {
         let width = self.width;
-        simd::run(width, Within { sheet: self.sheet(c, share), diagonals })
+        simd::run(width, Sweeps { sheet: self.sheet(c, target, rows), sweeps });
+    }
+
+    /// Whether a sweep that aims at a share of the limit would move nothing.
+    pub(crate) fn is_within(&mut self, c: &Substep, share: f32) -> bool {
+        let (width, rows) = (self.width, self.rows());
+        simd::run(width, LongRows { sheet: self.sheet(c, share, rows), diagonals: true, any: true }).is_none()
+    }
+
+    /// The first and the last row of some where a structural link is beyond its limit.
+    pub(crate) fn long_rows(&mut self, c: &Substep, rows: (usize, usize)) -> Option<(usize, usize)> {
+        let width = self.width;
+        let (first, last) =
+            simd::run(width, LongRows { sheet: self.sheet(c, 1.0, rows), diagonals: false, any: false })?;
+        Some((rows.0 + first, rows.0 + last))
     }
 
     /// Keeps the positions as they are, for [`Cloth::finish_limits`].
@@ -92,7 +109,7 @@ impl Cloth<'_> {
 
     /// The limit alone: positions and velocities.
     pub(crate) fn apply_strain_limit(&mut self, c: &Substep) {
-        if !self.is_within(c, TARGET, true) {
+        if !self.is_within(c, TARGET) {
             self.begin_limits();
             self.sweep_finest(c, TARGET);
             self.finish_limits(c);

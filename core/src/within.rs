@@ -1,20 +1,22 @@
-//! Whether any link of a sheet is too long: what lets the limits leave a cloth alone.
+//! Where links of a sheet are too long: what lets the limits leave a cloth, or most of its rows, alone.
 #![allow(unsafe_code)] // pointers into planes whose lengths are checked once: see `Sheet::pointers`
 
 use crate::limit::{Family, Pointers, Sheet, uncut};
 use crate::simd::{Pass, Three, Vector};
 
-/// Whether no structural link, and no diagonal where they count, is too long.
-pub(crate) struct Within<'s> {
+/// The first and the last row with a structural link, or a diagonal where they count, that is too long.
+pub(crate) struct LongRows<'s> {
     pub sheet: Sheet<'s>,
     pub diagonals: bool,
+    /// Whether one is enough.
+    pub any: bool,
 }
 
-impl Pass for Within<'_> {
-    type Output = bool;
+impl Pass for LongRows<'_> {
+    type Output = Option<(usize, usize)>;
 
     #[inline(always)]
-    fn run<V: Vector>(self, zero: V) -> bool {
+    fn run<V: Vector>(self, zero: V) -> Option<(usize, usize)> {
         match (self.diagonals, self.sheet.mask.is_empty()) {
             (false, true) => self.all::<V, false, false>(zero),
             (false, false) => self.all::<V, false, true>(zero),
@@ -24,16 +26,14 @@ impl Pass for Within<'_> {
     }
 }
 
-impl Within<'_> {
+impl LongRows<'_> {
     #[inline(always)]
-    fn all<V: Vector, const DIAGONALS: bool, const MASK: bool>(mut self, zero: V) -> bool {
-        let Some(p) = self.sheet.pointers() else {
-            return true;
-        };
+    fn all<V: Vector, const DIAGONALS: bool, const MASK: bool>(mut self, zero: V) -> Option<(usize, usize)> {
+        let p = self.sheet.pointers()?;
         let s = &self.sheet;
         let along = s.reach.along(s.columns);
         let across = [s.reach.across(s.columns, false), s.reach.across(s.columns, true)];
-        let mut row = 0;
+        let (mut found, mut row) = (None, 0);
         while row < s.rows {
             let pair = if row + 2 == s.rows { &across[1] } else { &across[0] };
             // SAFETY: `pointers` has checked the lengths: whole vectors of a row, and one place more in it and in the next.
@@ -46,11 +46,14 @@ impl Within<'_> {
                 }
             };
             if long {
-                return false;
+                found = Some((found.map_or(row, |(first, _)| first), row));
+                if self.any {
+                    break;
+                }
             }
             row += 1;
         }
-        true
+        found
     }
 }
 
