@@ -22,10 +22,10 @@ const COARSE_SWEEPS: u32 = 4;
 /// Most cycles of a substep. More than one is needed only where pins move by several cells in a substep.
 const MOST_CYCLES: u32 = 32;
 /// Cycles that aim at the usual share of the limit.
-const GENTLE_CYCLES: u32 = 3;
+const GENTLE_CYCLES: u32 = 1;
 
 /// Rounds, sweeps of each and rows around for what a cycle leaves.
-const LOCAL_ROUNDS: u32 = 4;
+const LOCAL_ROUNDS: u32 = 2;
 const LOCAL_SWEEPS: u32 = 4;
 const MARGIN: usize = 6;
 
