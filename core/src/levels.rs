@@ -19,9 +19,9 @@ use crate::{Cloth, Error, simd};
 /// Sweeps of a coarse level.
 const COARSE_SWEEPS: u32 = 4;
 
-/// Most cycles of a substep. More than one is needed only where pins move by several cells in a substep.
+/// Most cycles of a substep. More than a few are needed only where pins move by several cells in a substep.
 const MOST_CYCLES: u32 = 32;
-/// Cycles that aim at the usual share of the limit.
+/// Cycles that aim at the usual share of the limit; those after them aim at half of it.
 const GENTLE_CYCLES: u32 = 1;
 
 /// Rounds, sweeps of each and rows around for what a cycle leaves.
