@@ -130,7 +130,7 @@ impl<'a> Cloth<'a> {
                 count: 0,
                 capacity: layout.max_pins,
             },
-            tethers: Tethers::new(&layout, b)?,
+            tethers: Tethers::new(if layout.has_tethers() { p } else { 0 }, b)?,
             before: Before::new(&layout, b)?,
             levels: Levels::new(&layout, b)?,
             colliders: Colliders::new(&layout, b)?,

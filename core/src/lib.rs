@@ -58,6 +58,7 @@ mod passes;
 mod pin_force;
 mod pins;
 mod pose;
+mod prolong;
 mod shapes;
 mod simd;
 mod sleep;
@@ -68,6 +69,7 @@ mod strain_limit;
 mod targets;
 mod tethers;
 mod width;
+mod within;
 
 pub use air::Air;
 pub use bounds::Bounds;
