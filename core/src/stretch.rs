@@ -14,8 +14,9 @@ impl BudgetFlags {
     /// The predicted stretch is above [`STRETCH_RANGE`]: it is not within 15 % of what will be, and the cloth will look like
     /// rubber.
     pub const ABOVE_RANGE: BudgetFlags = BudgetFlags(1);
-    /// There is no prediction: the cloth does not hang from a whole straight edge or from its two corners, at rest and with
-    /// nothing but its weight to bear, or its rest was not found. The bound holds.
+    /// There is no prediction: the cloth does not hang from a whole straight edge or from its two corners with nothing but its
+    /// weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners), or its rest was not found.
+    /// The bound holds.
     pub const STRETCH_UNKNOWN: BudgetFlags = BudgetFlags(2);
     /// Limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels with a mask, or levels
     /// with a [`crate::ClothDef::strain_limit`] that is too small for the step ([`LIMIT_SPEED_M_S`]).
@@ -36,6 +37,9 @@ pub const LIMIT_SPEED_M_S: f32 = 3.0;
 
 /// The bound of a sheet whose stretch is predicted, as a multiple of it: within the range and above it.
 const MARGIN: [f32; 2] = [1.25, 2.0];
+
+/// How much stiffer warp or weft may be than the other under two corners.
+const BALANCE: f64 = 2.2;
 
 /// How far pins may be from a straight, level edge of the resting length, as a share of it.
 const STRAIGHT: f32 = 0.01;
@@ -119,7 +123,25 @@ impl Cloth<'_> {
             if (0..self.pins.count).all(pinned) { Some((edge, n, whole)) } else { None }
         });
         let (edge, n, whole) = edge?;
-        if burdened { None } else { self.is_level(edge, n).then_some((edge, whole)) }
+        let planar = whole || self.is_balanced();
+        if burdened || !planar { None } else { self.is_level(edge, n).then_some((edge, whole)) }
+    }
+
+    /// Whether neither of warp and weft is more than [`BALANCE`] times as stiff as the other. Beyond that a sheet on two corners
+    /// leaves its plane to hang on the stiffer ones, and stretches up to 2.4 times as much as its plane would.
+    fn is_balanced(&self) -> bool {
+        let l = self.layout;
+        let (mut u, mut v) = (0.0f64, 0.0f64);
+        for row in 0..l.rows {
+            for column in 0..l.columns {
+                u += f64::from(read(self.springs.u, l.at(row, column)));
+                v += f64::from(read(self.springs.v, l.at(row, column)));
+            }
+        }
+        // per spring
+        u *= (l.rows.saturating_sub(1) * l.columns) as f64;
+        v *= (l.columns.saturating_sub(1) * l.rows) as f64;
+        u <= BALANCE * v && v <= BALANCE * u
     }
 
     /// Whether the pins of an edge of n particles stand where a resting, level edge has them.

@@ -108,7 +108,7 @@ fn what_hangs_is_stretched_as_predicted() {
         Case { rows: 12, columns: 27, size_m: [2.0, 0.7], density: 0.9, radius_m: 0.2, ..SHEET },
         Case { rows: 31, columns: 18, size_m: [0.7, 1.3], whole_row: true, stiffness: DENIM, budget: weak, ..SHEET },
         Case { stiffness: WEAK_SHEAR, budget: weak, ..SHEET },
-        Case { stiffness: DENIM, radius_m: 0.3, budget: weak, ..SHEET },
+        Case { stiffness: [1975.0, 1000.0, 54.0, 1.0], radius_m: 0.3, budget: weak, ..SHEET },
         // nothing is cut
         Case { stiffness: [300.0, 150.0, 60.0, 4.0], steps_per_s: 3840, density: 0.15, ..SHEET },
         Case { rows: 32, columns: 32, steps_per_s: 960, ..SHEET },
@@ -173,7 +173,8 @@ fn rubber_is_above_the_range() {
 #[test]
 fn what_is_not_known_is_said_and_bounded() {
     type Change = fn(&mut Cloth<'_>);
-    let changes: [Change; 9] = [
+    let changes: [Change; 10] = [
+        |c| c.set_stiffness_uniform(DENIM).unwrap(),
         |c| c.unpin(0).unwrap(),
         |c| c.pin(100).unwrap(),
         |c| c.set_position(0, Vector3::new(0.2, 0.0, 0.0)).unwrap(),
@@ -207,7 +208,7 @@ fn what_is_not_known_is_said_and_bounded() {
             assert!(c.strain().largest <= report.stretch_bound, "{i}: {}", c.strain().largest);
         }
         // a pin that was moved away, and a scaled sheet, which starts under tension
-        assert!(report.stretch_bound < 20.0 || i == 3 || i == 7, "{i}: {report:?}");
+        assert!(report.stretch_bound < 60.0 || i == 4 || i == 8, "{i}: {report:?}");
     }
     // nothing bounds what is pulled apart, nor what falls
     let mut c = cloth(&squares(8, 8, 0.1, Families::ALL), &ClothDef::default());
@@ -306,7 +307,7 @@ fn the_table() {
                         if now > report.stretch_bound {
                             beyond.push(what.clone());
                         }
-                        if now < 0.2 {
+                        if now < 0.2 && report.flags != BudgetFlags::STRETCH_UNKNOWN {
                             worst = worst.max(ratio.max(1.0 / ratio));
                             if !(0.85..=1.15).contains(&ratio) {
                                 off.push(what);

@@ -67,7 +67,8 @@ pub const TAUT_STEP_NON_FINITE_STATE: u32 = 128;
 /// will look like rubber.
 pub const TAUT_BUDGET_ABOVE_RANGE: u32 = 1;
 /// A flag of taut_budget_report: there is no prediction. The cloth does not hang from a whole straight edge or from its two
-/// corners, at rest and with nothing but its weight to bear, or its rest was not found. The bound holds.
+/// corners with nothing but its weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners),
+/// or its rest was not found. The bound holds.
 pub const TAUT_BUDGET_STRETCH_UNKNOWN: u32 = 2;
 /// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
 /// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
@@ -120,8 +121,8 @@ const _: () = {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
-    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
+    /// 0.25 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.31 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
