@@ -57,6 +57,8 @@ mod step;
 
 mod step_all;
 
+mod width;
+
 mod read;
 
 mod mesh;

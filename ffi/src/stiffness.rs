@@ -124,7 +124,8 @@ pub unsafe extern "C" fn taut_cloth_load_stiffness(
     }
 }
 
-/// What the budget makes of the stiffness with the pins as they are: told before the first step, and kept.
+/// What the budget makes of the stiffness with the pins as they are, and what stretch to expect: told before the first step,
+/// and kept. Where a sheet hangs from an edge it is solved for its rest, which takes about the time of a second of the cloth.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 /// Threads: changes the cloth.

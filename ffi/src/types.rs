@@ -42,10 +42,37 @@ pub const TAUT_FEATURE_IMPLICIT: u32 = 1024;
 pub const TAUT_MAX_COLLIDERS: usize = 32;
 
 /// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
-/// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+/// positions, velocities, pins and step index are those before the call; pin targets, forces and the ways of colliders and
+/// targets in the frame are dropped. One of the TAUT_STEP_NON_FINITE_* names the cause beside it.
 pub const TAUT_STEP_NON_FINITE: u32 = 1;
 /// A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
 pub const TAUT_STEP_ASLEEP: u32 = 2;
+/// A flag of taut_cloth_step: a pin is not finite, or without the ways of the pins the frame would have stayed finite.
+pub const TAUT_STEP_NON_FINITE_PIN: u32 = 4;
+/// A flag of taut_cloth_step: the air is not finite, or in still air the frame would have stayed finite.
+pub const TAUT_STEP_NON_FINITE_AIR: u32 = 8;
+/// A flag of taut_cloth_step: a force is not finite, or without the forces of taut_cloth_add_force the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_FORCE: u32 = 16;
+/// A flag of taut_cloth_step: a collider is not finite, or without the ways of the colliders the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_COLLIDER: u32 = 32;
+/// A flag of taut_cloth_step: a skinned target is not finite, or without the ways of the targets the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_TARGET: u32 = 64;
+/// A flag of taut_cloth_step: none of these; positions, velocities or springs themselves run away.
+pub const TAUT_STEP_NON_FINITE_STATE: u32 = 128;
+
+/// A flag of taut_budget_report: the predicted stretch is above 0.2. It is not within 15 % of what will be, and the cloth
+/// will look like rubber.
+pub const TAUT_BUDGET_ABOVE_RANGE: u32 = 1;
+/// A flag of taut_budget_report: there is no prediction. The cloth does not hang from a whole straight edge or from its two
+/// corners with nothing but its weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners),
+/// or its rest was not found. The bound holds.
+pub const TAUT_BUDGET_STRETCH_UNKNOWN: u32 = 2;
+/// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
+/// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+pub const TAUT_BUDGET_LIMIT_NOT_KEPT: u32 = 4;
 
 const _: () = {
     assert!(TAUT_MAX_SIDE == taut_core::Grid::MAX_SIDE);
@@ -71,6 +98,20 @@ const _: () = {
     assert!(Solver::TAUT_SOLVER_BDF2 as u32 == taut_core::Solver::Bdf2 as u32);
     assert!(TAUT_STEP_NON_FINITE == taut_core::StepFlags::NON_FINITE.0);
     assert!(TAUT_STEP_ASLEEP == taut_core::StepFlags::ASLEEP.0);
+    assert!(TAUT_STEP_NON_FINITE_PIN == taut_core::StepFlags::NON_FINITE_PIN.0);
+    assert!(TAUT_STEP_NON_FINITE_AIR == taut_core::StepFlags::NON_FINITE_AIR.0);
+    assert!(TAUT_STEP_NON_FINITE_FORCE == taut_core::StepFlags::NON_FINITE_FORCE.0);
+    assert!(TAUT_STEP_NON_FINITE_COLLIDER == taut_core::StepFlags::NON_FINITE_COLLIDER.0);
+    assert!(TAUT_STEP_NON_FINITE_TARGET == taut_core::StepFlags::NON_FINITE_TARGET.0);
+    assert!(TAUT_STEP_NON_FINITE_STATE == taut_core::StepFlags::NON_FINITE_STATE.0);
+    assert!(TAUT_BUDGET_ABOVE_RANGE == taut_core::BudgetFlags::ABOVE_RANGE.0);
+    assert!(TAUT_BUDGET_STRETCH_UNKNOWN == taut_core::BudgetFlags::STRETCH_UNKNOWN.0);
+    assert!(TAUT_BUDGET_LIMIT_NOT_KEPT == taut_core::BudgetFlags::LIMIT_NOT_KEPT.0);
+    assert!(Width::TAUT_WIDTH_SCALAR as u32 == taut_core::Width::Scalar as u32);
+    assert!(Width::TAUT_WIDTH_SSE2 as u32 == taut_core::Width::Sse2 as u32);
+    assert!(Width::TAUT_WIDTH_AVX2 as u32 == taut_core::Width::Avx2 as u32);
+    assert!(Width::TAUT_WIDTH_AVX512 as u32 == taut_core::Width::Avx512 as u32);
+    assert!(Width::TAUT_WIDTH_NEON as u32 == taut_core::Width::Neon as u32);
     assert!(Budget::TAUT_BUDGET_CERTIFIED as u32 == taut_core::Budget::Certified as u32);
     assert!(Budget::TAUT_BUDGET_TUNED as u32 == taut_core::Budget::Tuned as u32);
 };
@@ -98,6 +139,23 @@ pub enum Solver {
     TAUT_SOLVER_IMPLICIT_EULER = 1,
     /// The second-order backward difference formula with conjugate gradients: as above, with less damping.
     TAUT_SOLVER_BDF2 = 2,
+}
+
+/// The vectors that a cloth is stepped in. Each gives the same bits; only the time differs.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Width {
+    /// One number at a time: every processor.
+    TAUT_WIDTH_SCALAR = 0,
+    /// 4 numbers: every x86_64.
+    TAUT_WIDTH_SSE2 = 1,
+    /// 8 numbers: x86_64 with AVX2.
+    TAUT_WIDTH_AVX2 = 2,
+    /// 16 numbers: x86_64 with AVX-512F.
+    TAUT_WIDTH_AVX512 = 3,
+    /// 4 numbers: every aarch64.
+    TAUT_WIDTH_NEON = 4,
 }
 
 /// The shape of a collider.
@@ -249,6 +307,14 @@ pub struct BudgetReport {
     pub inertia_added: f32,
     /// Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     pub hinge_fraction: f32,
+    /// Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
+    /// from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown.
+    pub stretch: f32,
+    /// What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
+    /// unless stretch is known on the way there too. Infinite where nothing bounds it.
+    pub stretch_bound: f32,
+    /// TAUT_BUDGET_ABOVE_RANGE and so on, or-ed.
+    pub flags: u32,
 }
 
 /// Where something is in the world and how it is turned: a collider, the frame of a cloth.
@@ -412,6 +478,9 @@ impl From<taut_core::BudgetReport> for BudgetReport {
             cut_fraction: r.cut_fraction,
             inertia_added: r.inertia_added,
             hinge_fraction: r.hinge_fraction,
+            stretch: r.stretch,
+            stretch_bound: r.stretch_bound,
+            flags: r.flags.0,
         }
     }
 }

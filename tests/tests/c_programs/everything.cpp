@@ -159,6 +159,13 @@ int surroundings(const taut::Grid &grid)
     DONE(read.is_asleep(asleep));
     REQUIRE(asleep == 1 && (flags & TAUT_STEP_ASLEEP) != 0);
     DONE(cloth.wake());
+    uint32_t widest, has;
+    DONE(read.width(widest));
+    DONE(taut::width_supported(static_cast<taut_width>(widest), has));
+    REQUIRE(has == 1);
+    DONE(cloth.set_width(TAUT_WIDTH_SCALAR));
+    DONE(read.width(widest));
+    REQUIRE(widest == TAUT_WIDTH_SCALAR);
     DONE(read.is_asleep(asleep));
     REQUIRE(asleep == 0);
     return 0;

@@ -95,7 +95,10 @@ fn structures_and_values_are_those_of_rust() {
         max_dt_s,
         cut_fraction,
         inertia_added,
-        hinge_fraction
+        hinge_fraction,
+        stretch,
+        stretch_bound,
+        flags
     );
     structure!(t, types::Pose, "taut_pose", position_m, rotation);
     structure!(
@@ -163,11 +166,26 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_MAX_COLLIDERS", taut::MAX_COLLIDERS as i64),
         ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
         ("TAUT_STEP_ASLEEP", i64::from(taut::StepFlags::ASLEEP.0)),
+        ("TAUT_STEP_NON_FINITE_PIN", i64::from(taut::StepFlags::NON_FINITE_PIN.0)),
+        ("TAUT_STEP_NON_FINITE_AIR", i64::from(taut::StepFlags::NON_FINITE_AIR.0)),
+        ("TAUT_STEP_NON_FINITE_FORCE", i64::from(taut::StepFlags::NON_FINITE_FORCE.0)),
+        ("TAUT_STEP_NON_FINITE_COLLIDER", i64::from(taut::StepFlags::NON_FINITE_COLLIDER.0)),
+        ("TAUT_STEP_NON_FINITE_TARGET", i64::from(taut::StepFlags::NON_FINITE_TARGET.0)),
+        ("TAUT_STEP_NON_FINITE_STATE", i64::from(taut::StepFlags::NON_FINITE_STATE.0)),
+        ("TAUT_BUDGET_ABOVE_RANGE", i64::from(taut::BudgetFlags::ABOVE_RANGE.0)),
+        ("TAUT_BUDGET_STRETCH_UNKNOWN", i64::from(taut::BudgetFlags::STRETCH_UNKNOWN.0)),
+        ("TAUT_BUDGET_LIMIT_NOT_KEPT", i64::from(taut::BudgetFlags::LIMIT_NOT_KEPT.0)),
+        ("TAUT_WIDTH_SCALAR", taut::Width::Scalar as i64),
+        ("TAUT_WIDTH_SSE2", taut::Width::Sse2 as i64),
+        ("TAUT_WIDTH_AVX2", taut::Width::Avx2 as i64),
+        ("TAUT_WIDTH_AVX512", taut::Width::Avx512 as i64),
+        ("TAUT_WIDTH_NEON", taut::Width::Neon as i64),
         ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
         ("(sizeof(taut_result))", 4),
         ("(sizeof(taut_budget))", 4),
         ("(sizeof(taut_solver))", 4),
         ("(sizeof(taut_shape))", 4),
+        ("(sizeof(taut_width))", 4),
     ] {
         writeln!(t, "_Static_assert({name} == {value}, \"{name}\");").unwrap();
     }

@@ -573,13 +573,13 @@ static int taken_back(void)
         DONE(taut_cloth_step(wild, &flags));
         ++frames;
     }
-    REQUIRE(flags == TAUT_STEP_NON_FINITE);
+    REQUIRE(flags == (TAUT_STEP_NON_FINITE | TAUT_STEP_NON_FINITE_STATE));
     DONE(taut_cloth_state_hash(wild, &after));
     DONE(taut_cloth_step_index(wild, &index));
     REQUIRE(after == hash && (int)index == frames - 1);
     DONE(taut_cloth_step_many(wild, 10, &flags)); // it would end so again, so the other nine are not tried
     DONE(taut_cloth_step_index(wild, &index));
-    REQUIRE(flags == TAUT_STEP_NON_FINITE && (int)index == frames - 1);
+    REQUIRE(flags == (TAUT_STEP_NON_FINITE | TAUT_STEP_NON_FINITE_STATE) && (int)index == frames - 1);
     return 0;
 }
 
@@ -621,6 +621,13 @@ int main(int argc, char **argv)
     DONE(taut_cloth_pin(cloth, 21));
     DONE(taut_cloth_pin(cloth, 21)); // pinned already
     DONE(taut_cloth_step_many(cloth, 5, &flags));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_width_supported(5, &flags));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_width(cloth, 5));
+    for (uint32_t width = TAUT_WIDTH_SCALAR; width <= TAUT_WIDTH_NEON; ++width) {
+        uint32_t has;
+        DONE(taut_width_supported(width, &has));
+        REQUIRE(taut_cloth_set_width(cloth, width) == (has ? TAUT_OK : TAUT_ERROR_UNSUPPORTED_WIDTH));
+    }
     DONE(taut_cloth_add_force(cloth, 30, force));
 
     if (versions() || grids() || definitions() || blocks() || handles() || meshes() || arguments() || stiffness() || snapshots()) {
