@@ -1,11 +1,14 @@
 //! Scenes, fabrics, metrics and pictures, shared by the program, the tests, the benches and training.
 
+pub mod atlas;
 pub mod bound;
 pub mod compare;
 pub mod cost;
 pub mod fabric;
+pub mod invariance;
 pub mod ledger;
 pub mod metrics;
 pub mod picture;
 pub mod plot;
 pub mod scene;
+pub mod twin;

@@ -4,7 +4,9 @@ use clap::Subcommand;
 
 use crate::failure::Failure;
 
+mod atlas;
 mod features;
+mod invariance;
 mod scenes;
 mod step;
 
@@ -15,6 +17,10 @@ pub enum Measure {
     Step(step::Args),
     /// What each feature costs in bytes and in time.
     Features(features::Args),
+    /// Extremes of step, stiffness, mass, start and pins: where it is stable, bounded or refused.
+    Atlas(atlas::Args),
+    /// What must not depend on the frame rate, the frame times, the step, the mesh, the precision.
+    Invariance(invariance::Args),
     /// Lists the scenes that measurements run.
     Scenes(scenes::Args),
 }
@@ -24,6 +30,8 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
     match what {
         Measure::Step(args) => step::run(args),
         Measure::Features(args) => features::run(args),
+        Measure::Atlas(args) => atlas::run(args),
+        Measure::Invariance(args) => invariance::run(args),
         Measure::Scenes(args) => scenes::run(args),
     }
 }
