@@ -3,6 +3,7 @@
 pub mod bound;
 pub mod compare;
 pub mod fabric;
+pub mod front;
 pub mod ledger;
 pub mod metrics;
 pub mod picture;
