@@ -57,6 +57,7 @@ mod normals;
 mod passes;
 mod pin_force;
 mod pins;
+pub mod plan;
 mod pose;
 mod shapes;
 mod simd;

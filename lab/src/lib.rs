@@ -2,6 +2,7 @@
 
 pub mod bound;
 pub mod compare;
+pub mod distill;
 pub mod fabric;
 pub mod front;
 pub mod ledger;

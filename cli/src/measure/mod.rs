@@ -4,11 +4,14 @@ use clap::Subcommand;
 
 use crate::failure::Failure;
 
+mod front;
 mod scenes;
 
 /// What to measure.
 #[derive(Subcommand, Debug)]
 pub enum Measure {
+    /// Measures what every setting costs and how wrong it is: rows, pictures, a scoreboard of the corrections.
+    Front(front::Args),
     /// Lists the scenes that measurements run.
     Scenes(scenes::Args),
 }
@@ -16,6 +19,7 @@ pub enum Measure {
 /// Runs a measurement.
 pub fn run(what: &Measure) -> Result<(), Failure> {
     match what {
+        Measure::Front(args) => front::run(args),
         Measure::Scenes(args) => scenes::run(args),
     }
 }

@@ -18,6 +18,6 @@ pub use pareto::pareto;
 pub use picture::{SERIES, chart};
 pub use row::{Row, csv};
 pub use scoreboard::{Cell, Scoreboard};
-pub use spec::{Correction, FABRICS, SIDE, Set, Spec};
+pub use spec::{Correction, FABRICS, NO_BEND, SIDE, Set, Spec};
 pub use trace::{Trace, swing_period};
 pub use yardstick::plain_ns;

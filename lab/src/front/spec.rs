@@ -15,7 +15,7 @@ pub const SIDE: u32 = 32;
 const RATE_HZ: f32 = 60.0;
 
 /// Families without bend springs, and without shear as well.
-const NO_BEND: Families = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
+pub const NO_BEND: Families = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
 
 /// Where the stiffness comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -132,7 +132,8 @@ pub(super) fn families_name(families: Families) -> &'static str {
 }
 
 impl Spec {
-    fn new(scene: Scene, fabric: &'static str, side: u32, correction: Correction) -> Spec {
+    /// A row at 60 Hz x 16, explicit, with all families and no limits.
+    pub fn new(scene: Scene, fabric: &'static str, side: u32, correction: Correction) -> Spec {
         Spec {
             scene,
             fabric,
