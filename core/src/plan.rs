@@ -166,23 +166,26 @@ struct FabricLaw {
     margin: f32,
 }
 
-/// Costs of a substep in plain steps (all families, no features), with the families that the plan keeps.
+/// Cost of a substep in plain steps (all families, no features), with the families that the plan keeps: constant + grid / n +
+/// step / substeps.
 #[derive(Clone, Copy, Debug)]
-struct Prices {
-    plain: f32,
-    tethers: f32,
-    levels: f32,
-    implicit: f32,
+struct Price {
+    constant: f32,
+    grid: f32,
+    step: f32,
 }
 
-/// What was measured of a hold.
+/// What was measured of a hold. Whole and implicit cloths are both of the fabric's own stiffness.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     plain: StepLaw,
     inertia: StepLaw,
     tethers: StepLaw,
     fabric: FabricLaw,
-    prices: Prices,
+    plain_price: Price,
+    tethers_price: Price,
+    levels_price: Price,
+    implicit_price: Price,
 }
 
 /// The inertia field of the plans: its radius as a share of the longer side.
@@ -195,6 +198,8 @@ const ITERATIONS: u32 = 10;
 const LEAST_LEVELS: u32 = 2;
 /// What levels aim at as a share of the tolerance.
 const AIM: f32 = 0.95;
+/// No substep is cheaper than this in plain steps, wherever a law leads to.
+const LEAST_PRICE: f32 = 0.3;
 /// The least strain limit that levels were seen to keep.
 const LEAST_LIMIT: f32 = 0.02;
 
@@ -293,19 +298,20 @@ fn of_method(grid: &Grid, def: &PlanDef, method: Method) -> Option<Plan> {
 impl Sheet<'_> {
     /// What to expect of a method with so many substeps; None where it cannot be done.
     fn at(&self, method: Method, substeps: u32) -> Option<Plan> {
-        let prices = &self.row.prices;
+        let row = self.row;
         let tolerance = self.def.tolerance;
-        let (mut solver, mut features, mut radius, mut limit) = (Solver::SymplecticEuler, Features::NONE, 0.0, tolerance);
+        let (mut solver, mut features, mut radius, mut limit) =
+            (Solver::SymplecticEuler, Features::NONE, 0.0, tolerance);
         let mut stiffness = PlanStiffness::Stiffest;
         let (strain, price) = match method {
-            Method::Plain => (self.by_step(&self.row.plain, substeps), prices.plain),
+            Method::Plain => (self.by_step(&row.plain, substeps), row.plain_price),
             Method::Inertia => {
                 radius = RADIUS * self.side;
-                (self.by_step(&self.row.inertia, substeps), prices.plain)
+                (self.by_step(&row.inertia, substeps), row.plain_price)
             }
             Method::Tethers => {
                 features = Features::TETHERS;
-                (self.by_step(&self.row.tethers, substeps), prices.tethers)
+                (self.by_step(&row.tethers, substeps), row.tethers_price)
             }
             Method::Levels => {
                 if substeps < LEAST_LEVELS || tolerance < LEAST_LIMIT {
@@ -313,18 +319,18 @@ impl Sheet<'_> {
                 }
                 features = Features::LEVELS;
                 limit = AIM * tolerance;
-                (limit, prices.levels)
+                (limit, row.levels_price)
             }
             Method::Whole => {
                 if substeps < self.whole_substeps() {
                     return None;
                 }
                 stiffness = PlanStiffness::Fabric;
-                (self.by_fabric(), prices.plain)
+                (self.by_fabric(), row.plain_price)
             }
             Method::Implicit => {
                 (solver, features, stiffness) = (Solver::ImplicitEuler, Features::IMPLICIT, PlanStiffness::Fabric);
-                (self.by_fabric(), prices.implicit)
+                (self.by_fabric(), row.implicit_price)
             }
         };
         // tethers need pins, inertia too
@@ -332,6 +338,7 @@ impl Sheet<'_> {
             return None;
         }
         let steps = self.grid.particles() as f32 * substeps as f32;
+        let price = max(price.constant + price.grid / self.cells + price.step / substeps as f32, LEAST_PRICE);
         Some(Plan {
             solver,
             substeps,

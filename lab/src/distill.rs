@@ -14,8 +14,7 @@ use crate::front::{Correction, NO_BEND, Row, Spec};
 use crate::scene::Scene;
 
 /// The fabrics that the laws of K as it is are fitted to.
-pub const FABRICS: [&str; 7] =
-    ["denim", "polyester tablecloth", "cotton jersey", "rib knit", "silk", "canvas", "felt"];
+pub const FABRICS: [&str; 7] = ["denim", "polyester tablecloth", "cotton jersey", "rib knit", "silk", "canvas", "felt"];
 
 /// Sides that the table is made from.
 pub const SIDES: [u32; 3] = [16, 32, 64];
@@ -89,7 +88,8 @@ fn families(hold: Hold, spec: Spec) -> Spec {
     if matches!(hold, Hold::Corner | Hold::Loose) { spec } else { Spec { families: NO_BEND, ..spec } }
 }
 
-fn implicit(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Spec {
+/// The row of the implicit method of a scene.
+pub fn implicit(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Spec {
     let base = Spec::new(scene, fabric, side, Correction::Analytic);
     families(hold, Spec { solver: Solver::ImplicitEuler, substeps: 1, ..base })
 }
@@ -134,7 +134,8 @@ pub fn point(hold: Hold, method: &str, spec: &Spec, row: &Row) -> Option<Point> 
     })
 }
 
-const HEADER: &str = "hold,method,side,substeps,warp_n_per_m,weft_n_per_m,shear_n_per_m,density_kg_m2,strain,plain_steps";
+const HEADER: &str =
+    "hold,method,side,substeps,warp_n_per_m,weft_n_per_m,shear_n_per_m,density_kg_m2,strain,plain_steps";
 
 /// The points as CSV, rounded as the table takes them.
 pub fn csv(points: &[Point]) -> String {
@@ -219,7 +220,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 pub fn table(points: &[Point]) -> String {
     let mut text = String::from(
         "//! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.\n\n\
-         use super::{FabricLaw, Prices, Row, StepLaw};\n\n\
+         use super::{FabricLaw, Price, Row, StepLaw};\n\n\
          /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; 5] = [\n",
     );
     for hold in Hold::ALL {
@@ -263,21 +264,28 @@ pub fn table(points: &[Point]) -> String {
             1.0 - c[2] - c[3],
             f.margin
         );
-        let plain = median(of("plain").map(|p| p.cost));
         // what the scene needs beside the plain step is no price of a method
-        let scene = if hold == Hold::Loose { plain - 1.0 } else { 0.0 };
-        let price = |method| median(of(method).map(|p| p.cost - scene)).max(0.0);
+        let scene = if hold == Hold::Loose { median(of("plain").map(|p| p.cost)) - 1.0 } else { 0.0 };
+        let price = |methods: [&'static str; 2]| {
+            let rows: Vec<(Vec<f64>, f64)> = methods
+                .into_iter()
+                .flat_map(of)
+                .map(|p| (vec![1.0, 1.0 / f64::from(p.side - 1), 1.0 / f64::from(p.substeps)], p.cost - scene))
+                .collect();
+            let c = if rows.is_empty() { vec![0.0; 3] } else { fit(&rows).coefficients };
+            format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2])
+        };
         let _ = writeln!(
             text,
             "    // {hold:?}\n    Row {{\n        plain: {},\n        inertia: {},\n        tethers: {},\n        fabric: {fabric},\n        \
-             prices: Prices {{ plain: {:.2}, tethers: {:.1}, levels: {:.1}, implicit: {:.1} }},\n    }},",
+             plain_price: {},\n        tethers_price: {},\n        levels_price: {},\n        implicit_price: {},\n    }},",
             step_law("plain"),
             step_law("inertia"),
             step_law("tethers"),
-            price("plain"),
-            price("tethers"),
-            price("levels"),
-            price("implicit"),
+            price(["plain", "inertia"]),
+            price(["tethers", ""]),
+            price(["levels", ""]),
+            price(["implicit", ""]),
         );
     }
     text + "];\n"

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod distill;
 pub mod fabric;
 pub mod front;
+pub mod holdout;
 pub mod ledger;
 pub mod metrics;
 pub mod picture;
