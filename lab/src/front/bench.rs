@@ -217,7 +217,10 @@ fn row(spec: &Spec, trace: &Trace, outcome: &Outcome, reference: &Trace, plain: 
         strain_error_points: sound(trace.strain_error_points(reference)),
         distance_pct: only(exact, 100.0 * trace.distance_m(reference) / f64::from(SIZE_M[0].max(SIZE_M[1]))),
         centre_error_mm: sound(1e3 * trace.centre_error_m(reference)),
-        kinetic_energy_error_pct: sound(relative(trace.kinetic_energy(), reference.kinetic_energy())),
+        kinetic_energy_error_pct: only(
+            !spec.scene.rests(),
+            relative(trace.kinetic_energy(), reference.kinetic_energy()),
+        ),
         period_error_pct: only(
             spec.scene == Scene::Swing,
             relative(trace.swing_period_s(spec.rate_hz), reference.swing_period_s(60.0)),

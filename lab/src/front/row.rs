@@ -60,7 +60,8 @@ pub struct Row {
     pub distance_pct: Option<f64>,
     /// Rms error of the centre of mass over the run.
     pub centre_error_mm: Option<f64>,
-    /// Error of the mean kinetic energy over the run; above 0 it moves more than the reference.
+    /// Error of the mean kinetic energy over the run, in the scenes that do not come to rest; above 0 it moves more than the
+    /// reference.
     pub kinetic_energy_error_pct: Option<f64>,
     /// Error of the period; only in swing.
     pub period_error_pct: Option<f64>,
