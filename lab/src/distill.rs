@@ -266,15 +266,21 @@ pub fn table(points: &[Point]) -> String {
         );
         // what the scene needs beside the plain step is no price of a method
         let scene = if hold == Hold::Loose { median(of("plain").map(|p| p.cost)) - 1.0 } else { 0.0 };
-        let price = |methods: [&'static str; 2]| {
-            let rows: Vec<(Vec<f64>, f64)> = methods
-                .into_iter()
-                .flat_map(of)
-                .map(|p| (vec![1.0, 1.0 / f64::from(p.side - 1), 1.0 / f64::from(p.substeps)], p.cost - scene))
-                .collect();
-            let c = if rows.is_empty() { vec![0.0; 3] } else { fit(&rows).coefficients };
-            format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2])
+        let price = |c: [f64; 3]| format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2]);
+        let fitted = |rows: Vec<&Point>, steps: bool| {
+            let x = |p: &Point| {
+                let step = if steps { 1.0 / f64::from(p.substeps) } else { 0.0 };
+                vec![1.0, 1.0 / f64::from(p.side - 1), step]
+            };
+            let c = fit(&rows.iter().map(|p| (x(p), p.cost - scene)).collect::<Vec<_>>()).coefficients;
+            [c[0], c[1], c[2]]
         };
+        let plain = match hold {
+            Hold::Loose => [1.0, 0.0, 0.0],
+            _ => fitted(of("plain").chain(of("inertia")).collect(), true),
+        };
+        // levels meet any limit with two substeps, so no others are planned
+        let levels = of("levels").filter(|p| p.substeps == 2).map(|p| p.cost - scene);
         let _ = writeln!(
             text,
             "    // {hold:?}\n    Row {{\n        plain: {},\n        inertia: {},\n        tethers: {},\n        fabric: {fabric},\n        \
@@ -282,10 +288,10 @@ pub fn table(points: &[Point]) -> String {
             step_law("plain"),
             step_law("inertia"),
             step_law("tethers"),
-            price(["plain", "inertia"]),
-            price(["tethers", ""]),
-            price(["levels", ""]),
-            price(["implicit", ""]),
+            price(plain),
+            price([median(of("tethers").map(|p| p.cost)), 0.0, 0.0]),
+            price([median(levels), 0.0, 0.0]),
+            price(fitted(of("implicit").collect(), false)),
         );
     }
     text + "];\n"
