@@ -88,6 +88,13 @@ inline const char *result_message(taut_result result) noexcept { return taut_res
     return taut_field_info(data, size, &out);
 }
 
+inline taut_plan_def plan_def_default() noexcept { return taut_plan_def_default(); }
+
+[[nodiscard]] inline taut_result plan(const taut_grid_def &on, const taut_plan_def &def, taut_settings &out) noexcept
+{
+    return taut_plan(&on, &def, &out);
+}
+
 inline taut_grid_def grid_def_default() noexcept { return taut_grid_def_default(); }
 
 [[nodiscard]] inline taut_result grid_memory(const taut_grid_def &def, taut_memory &out) noexcept

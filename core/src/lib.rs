@@ -58,6 +58,7 @@ mod normals;
 mod passes;
 mod pin_force;
 mod pins;
+pub mod plan;
 mod pose;
 mod prolong;
 mod shapes;

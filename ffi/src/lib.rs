@@ -32,6 +32,8 @@ mod handle;
 
 mod grid;
 
+mod plan;
+
 mod cloth;
 
 mod field;

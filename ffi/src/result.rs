@@ -64,6 +64,8 @@ pub enum Code {
     TAUT_ERROR_NO_SUCH_COLLIDER = -26,
     /// There are TAUT_MAX_COLLIDERS colliders already.
     TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
+    /// Not even the cheapest settings fit the time.
+    TAUT_ERROR_NO_PLAN = -28,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -124,6 +126,7 @@ rows! {
     TAUT_ERROR_ABSENT c"TAUT_ERROR_ABSENT" Absent,
     TAUT_ERROR_NO_SUCH_COLLIDER c"TAUT_ERROR_NO_SUCH_COLLIDER" NoSuchCollider,
     TAUT_ERROR_TOO_MANY_COLLIDERS c"TAUT_ERROR_TOO_MANY_COLLIDERS" TooManyColliders,
+    TAUT_ERROR_NO_PLAN c"TAUT_ERROR_NO_PLAN" NoPlan,
 }
 
 /// The codes that only C has.

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 
 mod atlas;
 mod features;
+mod front;
 mod invariance;
 mod scenes;
 mod step;
@@ -21,6 +22,8 @@ pub enum Measure {
     Atlas(atlas::Args),
     /// What must not depend on the frame rate, the frame times, the step, the mesh, the precision.
     Invariance(invariance::Args),
+    /// Measures what every setting costs and how wrong it is: rows, pictures, a scoreboard of the corrections.
+    Front(front::Args),
     /// Lists the scenes that measurements run.
     Scenes(scenes::Args),
 }
@@ -32,6 +35,7 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
         Measure::Features(args) => features::run(args),
         Measure::Atlas(args) => atlas::run(args),
         Measure::Invariance(args) => invariance::run(args),
+        Measure::Front(args) => front::run(args),
         Measure::Scenes(args) => scenes::run(args),
     }
 }

@@ -3,6 +3,8 @@
 mod bad_input;
 mod correct;
 mod drape;
+mod front;
 mod info;
 mod interrupt;
+mod plan;
 mod run;

@@ -129,6 +129,14 @@ int surroundings(const taut::Grid &grid)
     DONE(cloth.set_targets({0.0, 0.0, 0.0}, particles, skin, &skin[0][3], sizeof skin[0]));
     DONE(cloth.move_targets({0.0, 0.0, 0.01}, particles, skin, nullptr, sizeof skin[0]));
 
+    taut_grid_def planned = taut::grid_def_default();
+    taut_plan_def wish = taut::plan_def_default();
+    taut_settings settings;
+    DONE(taut::plan(planned, wish, settings));
+    REQUIRE(settings.meets == 1 && settings.strain <= wish.tolerance && settings.substeps >= 1);
+    wish.budget_ns = 1.0f;
+    REQUIRE(taut::plan(planned, wish, settings) == TAUT_ERROR_NO_PLAN);
+
     DONE(cloth.pin(0));
     DONE(cloth.pin(side - 1));
     uint32_t flags, asleep = 1;

@@ -84,6 +84,38 @@ fn structures_and_values_are_those_of_rust() {
         v_axis,
         reserved
     );
+    structure!(
+        t,
+        types::PlanDef,
+        "taut_plan_def",
+        size,
+        cookie,
+        hold,
+        tolerance,
+        budget_ns,
+        plain_ns,
+        rate_hz,
+        gravity_m_s2,
+        density_kg_m2,
+        stiffness_n_m
+    );
+    structure!(
+        t,
+        types::Plan,
+        "taut_settings",
+        solver,
+        substeps,
+        cg_iterations,
+        families,
+        features,
+        stiffness,
+        inertia_radius_m,
+        strain_limit,
+        tether_slack,
+        strain,
+        frame_ns,
+        meets
+    );
     structure!(t, types::Memory, "taut_memory", size, align);
     structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
     structure!(t, types::Bounds, "taut_bounds", low_m, high_m);
@@ -143,6 +175,13 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_SOLVER_SYMPLECTIC_EULER", taut::Solver::SymplecticEuler as i64),
         ("TAUT_SOLVER_IMPLICIT_EULER", taut::Solver::ImplicitEuler as i64),
         ("TAUT_SOLVER_BDF2", taut::Solver::Bdf2 as i64),
+        ("TAUT_HOLD_EDGE", taut::plan::Hold::Edge as i64),
+        ("TAUT_HOLD_HOOKS", taut::plan::Hold::Hooks as i64),
+        ("TAUT_HOLD_CORNERS", taut::plan::Hold::Corners as i64),
+        ("TAUT_HOLD_CORNER", taut::plan::Hold::Corner as i64),
+        ("TAUT_HOLD_LOOSE", taut::plan::Hold::Loose as i64),
+        ("TAUT_STIFFNESS_STIFFEST", taut::plan::PlanStiffness::Stiffest as i64),
+        ("TAUT_STIFFNESS_FABRIC", taut::plan::PlanStiffness::Fabric as i64),
         ("TAUT_SHAPE_SPHERE", types::ColliderShape::TAUT_SHAPE_SPHERE as i64),
         ("TAUT_SHAPE_CAPSULE", types::ColliderShape::TAUT_SHAPE_CAPSULE as i64),
         ("TAUT_SHAPE_PLANE", types::ColliderShape::TAUT_SHAPE_PLANE as i64),
@@ -186,6 +225,8 @@ fn structures_and_values_are_those_of_rust() {
         ("(sizeof(taut_solver))", 4),
         ("(sizeof(taut_shape))", 4),
         ("(sizeof(taut_width))", 4),
+        ("(sizeof(taut_hold))", 4),
+        ("(sizeof(taut_stiffness))", 4),
     ] {
         writeln!(t, "_Static_assert({name} == {value}, \"{name}\");").unwrap();
     }
@@ -219,6 +260,16 @@ fn defaults(t: &mut String) {
     equal("g.width_m", g.width_m.into());
     equal("g.height_m", g.height_m.into());
     equal("(float)g.families", g.families.0.into());
+    writeln!(t, "    taut_plan_def p = taut_plan_def_default();").unwrap();
+    let p = taut::plan::PlanDef::default();
+    equal("(float)p.hold", f64::from(p.hold as u32));
+    equal("p.tolerance", p.tolerance.into());
+    equal("p.plain_ns", p.plain_ns.into());
+    equal("p.rate_hz", p.rate_hz.into());
+    equal("p.gravity_m_s2", p.gravity_m_s2.into());
+    equal("p.density_kg_m2", p.density_kg_m2.into());
+    (0..4).for_each(|i| equal(&format!("p.stiffness_n_m[{i}]"), p.stiffness_n_per_m[i].into()));
+    writeln!(t, "    REQUIRE(p.budget_ns > 1e38f);").unwrap();
     writeln!(t, "    taut_cloth_def d = taut_cloth_def_default(NULL);").unwrap();
     let d = ClothDef::default();
     let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == (float){value:?});").unwrap();

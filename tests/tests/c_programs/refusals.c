@@ -298,6 +298,7 @@ static int handles(void)
     return 0;
 }
 #include "refusals_meshes.h"
+#include "refusals_plan.h"
 static int arguments(void)
 {
     const double nan_world[3] = {0, (double)NAN, 0};
@@ -630,7 +631,8 @@ int main(int argc, char **argv)
     }
     DONE(taut_cloth_add_force(cloth, 30, force));
 
-    if (versions() || grids() || definitions() || blocks() || handles() || meshes() || arguments() || stiffness() || snapshots()) {
+    if (versions() || grids() || definitions() || blocks() || handles() || meshes() || arguments() || stiffness() || snapshots() ||
+        plans()) {
         return 1;
     }
 
