@@ -254,13 +254,13 @@ fn structures_and_values_are_those_of_rust() {
 fn defaults(t: &mut String) {
     let g = GridDef::default();
     writeln!(t, "    taut_grid_def g = taut_grid_def_default();").unwrap();
+    writeln!(t, "    taut_plan_def p = taut_plan_def_default();").unwrap();
     let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == {value:?}f);").unwrap();
     equal("(float)g.rows", g.rows.into());
     equal("(float)g.columns", g.columns.into());
     equal("g.width_m", g.width_m.into());
     equal("g.height_m", g.height_m.into());
     equal("(float)g.families", g.families.0.into());
-    writeln!(t, "    taut_plan_def p = taut_plan_def_default();").unwrap();
     let p = taut::plan::PlanDef::default();
     equal("(float)p.hold", f64::from(p.hold as u32));
     equal("p.tolerance", p.tolerance.into());
