@@ -166,11 +166,46 @@
 #define TAUT_MAX_COLLIDERS 32
 
 // A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
-// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+// positions, velocities, pins and step index are those before the call; pin targets, forces and the ways of colliders and
+// targets in the frame are dropped. One of the TAUT_STEP_NON_FINITE_* names the cause beside it.
 #define TAUT_STEP_NON_FINITE 1
 
 // A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
 #define TAUT_STEP_ASLEEP 2
+
+// A flag of taut_cloth_step: a pin is not finite, or without the ways of the pins the frame would have stayed finite.
+#define TAUT_STEP_NON_FINITE_PIN 4
+
+// A flag of taut_cloth_step: the air is not finite, or in still air the frame would have stayed finite.
+#define TAUT_STEP_NON_FINITE_AIR 8
+
+// A flag of taut_cloth_step: a force is not finite, or without the forces of taut_cloth_add_force the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_FORCE 16
+
+// A flag of taut_cloth_step: a collider is not finite, or without the ways of the colliders the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_COLLIDER 32
+
+// A flag of taut_cloth_step: a skinned target is not finite, or without the ways of the targets the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_TARGET 64
+
+// A flag of taut_cloth_step: none of these; positions, velocities or springs themselves run away.
+#define TAUT_STEP_NON_FINITE_STATE 128
+
+// A flag of taut_budget_report: the predicted stretch is above 0.2. It is not within 15 % of what will be, and the cloth
+// will look like rubber.
+#define TAUT_BUDGET_ABOVE_RANGE 1
+
+// A flag of taut_budget_report: there is no prediction. The cloth does not hang from a whole straight edge or from its two
+// corners with nothing but its weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners),
+// or its rest was not found. The bound holds.
+#define TAUT_BUDGET_STRETCH_UNKNOWN 2
+
+// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
+// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+#define TAUT_BUDGET_LIMIT_NOT_KEPT 4
 
 // Bytes of the block of a grid, on every target.
 #define TAUT_GRID_BYTES 64
@@ -320,6 +355,31 @@ enum taut_shape
 typedef enum taut_shape taut_shape;
 #else
 typedef uint32_t taut_shape;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The vectors that a cloth is stepped in. Each gives the same bits; only the time differs.
+enum taut_width
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // One number at a time: every processor.
+    TAUT_WIDTH_SCALAR = 0,
+    // 4 numbers: every x86_64.
+    TAUT_WIDTH_SSE2 = 1,
+    // 8 numbers: x86_64 with AVX2.
+    TAUT_WIDTH_AVX2 = 2,
+    // 16 numbers: x86_64 with AVX-512F.
+    TAUT_WIDTH_AVX512 = 3,
+    // 4 numbers: every aarch64.
+    TAUT_WIDTH_NEON = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_width taut_width;
+#else
+typedef uint32_t taut_width;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -476,6 +536,14 @@ typedef struct {
     float inertia_added;
     // Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     float hinge_fraction;
+    // Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
+    // from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown.
+    float stretch;
+    // What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
+    // unless stretch is known on the way there too. Infinite where nothing bounds it.
+    float stretch_bound;
+    // TAUT_BUDGET_ABOVE_RANGE and so on, or-ed.
+    uint32_t flags;
 } taut_budget_report;
 
 // Where something is in the world and how it is turned: a collider, the frame of a cloth.
@@ -729,11 +797,14 @@ taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
                                       size_t size,
                                       taut_fabric *out_fabric);
 
-// What the budget makes of the stiffness with the pins as they are: told before the first step, and kept.
+// What the budget makes of the stiffness with the pins as they are, and what stretch to expect: told before the first step,
+// and kept. Where a sheet hangs from an edge it is solved for its rest, which takes about the time of a second of the cloth.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
-TAUT_API taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
+TAUT_API
+taut_result taut_cloth_budget(taut_cloth *cloth,
+                              taut_budget_report *out);
 
 // Chooses which particles exist, by a byte for each of the count particles: 0 is absent, everything else is present. Needs
 // TAUT_FEATURE_MASK; at first all are present. May be called at any time, so a cloth can tear.
@@ -1070,6 +1141,28 @@ TAUT_API
 taut_result taut_cloth_step_all(taut_cloth *const *cloths,
                                 uint32_t count,
                                 uint32_t *out_flags);
+
+// Whether this machine has the vectors of a taut_width: 1, or 0.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_OUT_OF_RANGE (no taut_width).
+// Threads: any.
+TAUT_API taut_result taut_width_supported(uint32_t number, uint32_t *out);
+
+// Steps in other vectors (a taut_width) from now on, to time or test them: the bits stay the same. A cloth begins with the widest
+// ones of the machine. This is no part of the state: no snapshot holds it, and a reset keeps it.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (no taut_width),
+// TAUT_ERROR_UNSUPPORTED_WIDTH (this machine lacks it).
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_set_width(taut_cloth *cloth,
+                                 uint32_t number);
+
+// The vectors that the cloth is stepped in: a taut_width.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+TAUT_API taut_result taut_cloth_width(const taut_cloth *cloth, uint32_t *out);
 
 // The positions without a copy.
 //
