@@ -194,8 +194,8 @@ const RADIUS: f32 = 0.3;
 const MOST: u32 = 256;
 /// Iterations of the implicit solver.
 const ITERATIONS: u32 = 10;
-/// Levels with fewer substeps were not measured.
-const LEAST_LEVELS: u32 = 2;
+/// Tethers and levels with fewer substeps were not measured.
+const LEAST_LIMITED: u32 = 2;
 /// What levels aim at as a share of the tolerance.
 const AIM: f32 = 0.95;
 /// No substep is cheaper than this in plain steps, wherever a law leads to.
@@ -314,7 +314,7 @@ impl Sheet<'_> {
                 (self.by_step(&row.tethers, substeps), row.tethers_price)
             }
             Method::Levels => {
-                if substeps < LEAST_LEVELS || tolerance < LEAST_LIMIT {
+                if tolerance < LEAST_LIMIT {
                     return None;
                 }
                 features = Features::LEVELS;
@@ -333,6 +333,9 @@ impl Sheet<'_> {
                 (self.by_fabric(), row.implicit_price)
             }
         };
+        if substeps < LEAST_LIMITED && matches!(method, Method::Tethers | Method::Levels) {
+            return None;
+        }
         // tethers need pins, inertia too
         if self.def.hold == Hold::Loose && matches!(method, Method::Tethers | Method::Inertia) {
             return None;

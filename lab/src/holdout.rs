@@ -102,7 +102,12 @@ pub fn judge(
     for &tolerance in tolerances {
         let p = plan(&grid, &question(scene, &known, tolerance)).map_err(text)?;
         let spec = row_of(&p, scene, fabric, side);
-        let (strain, cost, _) = measure(&spec)?;
+        // measured twice it would be compared with its own noise
+        let key = spec.key();
+        let (strain, cost) = match rows.iter().find(|r| r.2 == key) {
+            Some(row) => (row.0, row.1),
+            None => measure(&spec).map(|r| (r.0, r.1))?,
+        };
         let met = rows.iter().filter(|r| r.0 <= f64::from(tolerance));
         let best = met.min_by(|a, b| a.1.total_cmp(&b.1)).map(|r| (r.1, r.2.clone()));
         verdicts.push(Verdict { spec, tolerance, told: p.strain, strain, cost, best, promised: p.meets });
