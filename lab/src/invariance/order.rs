@@ -55,7 +55,6 @@ impl Smooth {
     /// Frames of the coarsest step and its rate: what resolves the motion, and the explicit solver carries.
     fn coarsest(self, solver: Solver) -> (u32, f32) {
         match (self, solver) {
-            (Smooth::Spring, Solver::Bdf2) => (80, 160.0),
             (Smooth::Spring, _) => (320, 640.0),
             (Smooth::Chain, Solver::SymplecticEuler) => (400, 800.0),
             (Smooth::Chain, Solver::ImplicitEuler) => (240, 480.0),
@@ -169,12 +168,15 @@ mod tests {
 
     #[test]
     fn the_orders_are_those_of_theory() {
+        let mut wrong = Vec::new();
         for scene in Smooth::ALL {
             for solver in [Solver::SymplecticEuler, Solver::ImplicitEuler, Solver::Bdf2] {
                 let o = order(scene, solver).unwrap();
-                let finest = o.orders.last().unwrap();
-                assert!((finest - o.expected).abs() < 0.15, "{o:?}");
+                if (o.orders.last().unwrap() - o.expected).abs() > 0.15 {
+                    wrong.push(o);
+                }
             }
         }
+        assert!(wrong.is_empty(), "{wrong:#?}");
     }
 }

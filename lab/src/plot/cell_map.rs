@@ -179,7 +179,7 @@ mod tests {
             cells: (0..9).map(|i| if i == 4 { None } else { Some(i % 2) }).collect(),
         };
         CellMaps {
-            legend: vec![("stable".into(), [0, 158, 115]), ("refused".into(), [200, 200, 200])],
+            legend: vec![("stable".into(), [0, 158, 115]), ("refused".into(), [86, 180, 233])],
             rows: vec![vec![map.clone(), map.clone()], vec![map]],
         }
     }
@@ -190,17 +190,18 @@ mod tests {
         let png = m.png().unwrap();
         let picture = image::load_from_memory(&png).unwrap().to_rgb8();
         assert_eq!(picture.dimensions(), m.size());
-        let each = ((CELL - 1) * (CELL - 1)) as usize;
+        // two pixels are between cells
+        let each = ((CELL - 2) * (CELL - 2)) as usize;
         let of = |colour: [u8; 3]| picture.pixels().filter(|p| p.0 == colour).count();
         // in each of three maps four even cells (the middle one is not drawn) and four odd ones, and one in the legend
-        let counts = [of([0, 158, 115]), of([200, 200, 200])];
+        let counts = [of([0, 158, 115]), of([86, 180, 233])];
         assert_eq!(counts, [13 * each; 2]);
         // the lowest row first: the cell above the left end of the bottom is the first
         let (left, _) = m.rooms();
         let bottom = MARGIN + TITLE + 3 * CELL;
         let pixel = |x: i32, y: i32| picture.get_pixel(x as u32, y as u32).0;
         assert_eq!(pixel(MARGIN + left + 3, bottom - 5), [0, 158, 115]);
-        assert_eq!(pixel(MARGIN + left + CELL + 3, bottom - 5), [200, 200, 200]);
+        assert_eq!(pixel(MARGIN + left + CELL + 3, bottom - 5), [86, 180, 233]);
         assert_eq!(png, m.png().unwrap());
         assert!(m.svg().unwrap().contains("stiffness"));
     }
