@@ -3,6 +3,7 @@
 pub mod against;
 pub mod bound;
 pub mod compare;
+pub mod cusick;
 pub mod fabric;
 pub mod ledger;
 pub mod metrics;

@@ -6,7 +6,6 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use npyz::{NpyFile, Order};
 use zip::ZipArchive;
 
 /// Most bytes of one array once it is unpacked: a minute of a 65 x 65 mesh at 60 frames per second has 180 MB.
@@ -72,7 +71,7 @@ impl Npz {
 
     /// Whether the file has an array of this name.
     pub fn has(&self, array: &str) -> bool {
-        self.archive.index_for_name(&format!("{array}.npy")).is_some()
+        self.archive.file_names().any(|name| name.strip_suffix(".npy") == Some(array))
     }
 
     /// An error about an array of this file.
@@ -84,21 +83,10 @@ impl Npz {
     /// 256 MiB, or has a number that is not finite.
     pub fn floats(&mut self, array: &str) -> Result<Array<f32>, NpzError> {
         let bytes = self.bytes(array)?;
-        let read = |e: std::io::Error| e.to_string();
-        let all = parse(&bytes).and_then(|(shape, count, file)| {
-            let file = match file.try_data::<f32>() {
-                Ok(data) => {
-                    return Ok(Array { shape, values: data.take(count).collect::<Result<_, _>>().map_err(read)? });
-                }
-                Err(file) => file,
-            };
-            match file.try_data::<f64>() {
-                Ok(data) => {
-                    let values = data.take(count).map(|x| x.map(|x| x as f32)).collect::<Result<_, _>>();
-                    Ok(Array { shape, values: values.map_err(read)? })
-                }
-                Err(file) => Err(format!("float32 or float64 expected, not {}", file.dtype().descr())),
-            }
+        let all = Header::parse(&bytes).and_then(|h| match h.kind {
+            "<f4" => h.numbers(f32::from_le_bytes),
+            "<f8" => h.numbers(|b| f64::from_le_bytes(b) as f32),
+            kind => Err(format!("float32 or float64 (<f4, <f8) expected, not {kind:?}")),
         });
         let all = all.map_err(|reason| self.wrong(array, reason))?;
         match all.values.iter().position(|x: &f32| !x.is_finite()) {
@@ -110,19 +98,10 @@ impl Npz {
     /// An array of int32 or int64 whose numbers are indices: 0 to 2^31 - 1. Errors as [`Npz::floats`].
     pub fn indices(&mut self, array: &str) -> Result<Array<usize>, NpzError> {
         let bytes = self.bytes(array)?;
-        let read = |e: std::io::Error| e.to_string();
-        let all = parse(&bytes).and_then(|(shape, count, file)| {
-            let file = match file.try_data::<i32>() {
-                Ok(data) => {
-                    let values = data.take(count).map(|x| x.map(i64::from)).collect::<Result<_, _>>();
-                    return Ok(Array { shape, values: values.map_err(read)? });
-                }
-                Err(file) => file,
-            };
-            match file.try_data::<i64>() {
-                Ok(data) => Ok(Array { shape, values: data.take(count).collect::<Result<_, _>>().map_err(read)? }),
-                Err(file) => Err(format!("int32 or int64 expected, not {}", file.dtype().descr())),
-            }
+        let all = Header::parse(&bytes).and_then(|h| match h.kind {
+            "<i4" => h.numbers(|b| i64::from(i32::from_le_bytes(b))),
+            "<i8" => h.numbers(i64::from_le_bytes),
+            kind => Err(format!("int32 or int64 (<i4, <i8) expected, not {kind:?}")),
         });
         let all: Array<i64> = all.map_err(|reason| self.wrong(array, reason))?;
         let values = all.values.iter().map(|i| usize::try_from(i32::try_from(*i).ok()?).ok()).collect::<Option<_>>();
@@ -149,32 +128,64 @@ impl Npz {
     }
 }
 
-/// Shape, number of values and the file of an array whose header agrees with its length.
-fn parse(bytes: &[u8]) -> Result<(Vec<usize>, usize, NpyFile<&[u8]>), String> {
-    let header = match bytes {
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => usize::from(u16::from_le_bytes([*a, *b])),
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, ..] => u32::from_le_bytes([*a, *b, *c, *d]) as usize,
-        _ => return Err("is no .npy file".into()),
-    };
-    if header > LONGEST_HEADER {
-        return Err(format!("its header has {header} bytes"));
+/// The header of a `.npy` file (NumPy's format, versions 1 to 3) and the numbers behind it.
+struct Header<'b> {
+    /// The type, such as `<f4`.
+    kind: &'b str,
+    shape: Vec<usize>,
+    data: &'b [u8],
+}
+
+impl<'b> Header<'b> {
+    /// Reads `{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }`.
+    fn parse(bytes: &'b [u8]) -> Result<Header<'b>, String> {
+        let (start, length) = match bytes {
+            [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
+            [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, ..] => {
+                (12, u32::from_le_bytes([*a, *b, *c, *d]) as usize)
+            }
+            _ => return Err("is no .npy file".into()),
+        };
+        if length > LONGEST_HEADER {
+            return Err(format!("its header has {length} bytes"));
+        }
+        let (Some(header), Some(data)) = (bytes.get(start..start + length), bytes.get(start + length..)) else {
+            return Err("is cut off in its header".into());
+        };
+        let fields = std::str::from_utf8(header).ok().and_then(|text| {
+            let after = |key: &str| text.split_once(key).map(|(_, rest)| rest.trim_start());
+            let kind = after("'descr':")?.strip_prefix('\'')?.split_once('\'')?.0;
+            let order = after("'fortran_order':")?.split([',', '}']).next()?.trim();
+            let shape = after("'shape':")?.strip_prefix('(')?.split_once(')')?.0;
+            Some((kind, order, shape))
+        });
+        let Some((kind, order, shape)) = fields else {
+            return Err("its header cannot be read".into());
+        };
+        if order != "False" {
+            return Err("is in Fortran's order".into());
+        }
+        let sides = shape.split(',').map(str::trim).filter(|s| !s.is_empty());
+        let shape: Result<Vec<usize>, _> = sides.map(str::parse).collect();
+        let shape = shape.map_err(|_| "its shape cannot be read".to_string())?;
+        Ok(Header { kind, shape, data })
     }
-    let file = NpyFile::new(bytes).map_err(|e| format!("its header cannot be read: {e}"))?;
-    if file.order() != Order::C {
-        return Err("is in Fortran's order".into());
+
+    /// The numbers of N bytes each.
+    fn numbers<const N: usize, T>(self, number: impl Fn([u8; N]) -> T) -> Result<Array<T>, String> {
+        let count = self.shape.iter().try_fold(1usize, |n, &side| n.checked_mul(side));
+        let Some(count) = count.filter(|n| n.checked_mul(N).is_some()) else {
+            return Err("its shape is too large".into());
+        };
+        let (given, rest) = self.data.as_chunks::<N>();
+        if given.len() < count {
+            return Err(format!("is cut off: {} of {count} numbers", given.len()));
+        }
+        if given.len() > count || !rest.is_empty() {
+            return Err(format!("has more than its {count} numbers"));
+        }
+        Ok(Array { shape: self.shape, values: given.iter().map(|b| number(*b)).collect() })
     }
-    let shape: Option<Vec<usize>> = file.shape().iter().map(|&n| usize::try_from(n).ok()).collect();
-    let count = shape.as_ref().and_then(|s| s.iter().try_fold(1usize, |n, &d| n.checked_mul(d)));
-    let (Some(shape), Some(count)) = (shape, count) else {
-        return Err("its shape is too large".into());
-    };
-    // the numbers are what follows the header, so its end need not be known exactly to see that they cannot all be there
-    let number = file.dtype().num_bytes().unwrap_or(0);
-    let needed = count.checked_mul(number.max(1));
-    if needed.is_none_or(|n| n > bytes.len().saturating_sub(header)) {
-        return Err(format!("is cut off: {shape:?} needs more than its {} bytes", bytes.len()));
-    }
-    Ok((shape, count, file))
 }
 
 #[cfg(test)]
@@ -200,7 +211,7 @@ pub(crate) mod tests {
     /// Writes an archive of arrays, deflated as NumPy's `savez_compressed` does.
     pub fn write(path: &Path, arrays: &[(&str, Vec<u8>)]) {
         let mut zip = zip::ZipWriter::new(File::create(path).expect("made"));
-        let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+        let options = zip::write::FileOptions::default().compression_method(zip::CompressionMethod::Deflated);
         for (name, bytes) in arrays {
             zip.start_file(format!("{name}.npy"), options).expect("started");
             zip.write_all(bytes).expect("written");
@@ -255,7 +266,11 @@ pub(crate) mod tests {
             let e = Npz::open(&path).unwrap().floats("x").unwrap_err().to_string();
             assert!(e.contains("b.npz") && e.contains("`x`") && e.contains(named), "{e}");
         };
-        fails(f4("(2, 3)", &[1.0; 5]), "cut off");
+        fails(f4("(2, 3)", &[1.0; 5]), "cut off: 5 of 6 numbers");
+        fails(f4("(2, 3)", &[1.0; 7]), "more than its 6 numbers");
+        fails(f4("(2, x)", &[1.0; 7]), "shape cannot be read");
+        fails(f4("(-2,)", &[1.0; 7]), "shape cannot be read");
+        fails(npy(">f4", "(1,)", &[0; 4]), "float32 or float64 (<f4, <f8) expected");
         fails(f4("(1000000, 1000000, 1000000, 100)", &[1.0; 5]), "too large");
         fails(f4("(100000000, 1000)", &[1.0; 5]), "cut off");
         fails(f4("(2,)", &[1.0, f32::NAN]), "number 1 is not finite");

@@ -17,6 +17,7 @@ mod raster;
 mod save;
 mod shadow;
 mod sheet;
+mod solid;
 mod text;
 mod vector;
 
