@@ -20,6 +20,9 @@ pub const INERTIA_MAX: f32 = 32.0;
 /// Stiffness that every budget cuts: "as stiff as the step allows" in N/m.
 const BEYOND: f32 = 1e8;
 
+/// Warp, weft, shear, bend: the best of the analytic choices where the budget clamps them all.
+pub const RATIOS: [f32; 4] = [1.0, 1.0, 0.3, 0.02];
+
 /// What all settings of a comparison share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
@@ -62,10 +65,14 @@ pub enum Setting {
     UniformInertia,
     /// [`Setting::Analytic`] with the inertia field.
     AnalyticInertia(Fabric),
+    /// As stiff as the step allows in the ratios [`RATIOS`], with the inertia field.
+    RatiosInertia,
     /// A generated field `[4][rows][columns]` in N/m with the inertia field.
     Generated(Vec<f32>),
     /// Four numbers in N/m (warp, weft, shear, bend) that were fitted to strains ([`crate::front::fit`]).
     DataDriven([f32; 4]),
+    /// A setting with limits on levels: the largest strain along warp, weft and diagonal.
+    Limited(Box<Setting>, [f32; 3]),
 }
 
 impl Setting {
@@ -78,13 +85,31 @@ impl Setting {
             Setting::Analytic(_) => "analytic",
             Setting::UniformInertia => "uniform_inertia",
             Setting::AnalyticInertia(_) => "analytic_inertia",
+            Setting::RatiosInertia => "ratios_inertia",
             Setting::Generated(_) => "generated",
             Setting::DataDriven(_) => "data_driven",
+            Setting::Limited(of, _) => match **of {
+                Setting::UniformInertia => "uniform_limits",
+                Setting::AnalyticInertia(_) => "analytic_limits",
+                Setting::RatiosInertia => "ratios_limits",
+                Setting::Generated(_) => "generated_limits",
+                _ => "limits",
+            },
         }
     }
 
     fn has_inertia(&self) -> bool {
-        matches!(self, Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::Generated(_))
+        match self {
+            Setting::Limited(of, _) => of.has_inertia(),
+            Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::RatiosInertia | Setting::Generated(_) => {
+                true
+            }
+            Setting::Reference(_)
+            | Setting::Random
+            | Setting::Uniform
+            | Setting::Analytic(_)
+            | Setting::DataDriven(_) => false,
+        }
     }
 
     /// The field at the particles in N/m.
@@ -99,7 +124,9 @@ impl Setting {
                 // one matrix for all families, as the paper has it; U(0, 1) of the budget comes by the scale below
                 (0..4 * n).map(|i| noise::uniform(case.seed, (i % n) as u32)).collect()
             }
+            Setting::RatiosInertia => constant(RATIOS.map(|r| r * BEYOND)),
             Setting::Generated(field) => field.clone(),
+            Setting::Limited(of, _) => of.field(case),
         }
     }
 }
@@ -252,6 +279,10 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
         ..ClothDef::default()
     });
     let mut def = case.scene.fit(&def, shape.0, shape.1);
+    if let Setting::Limited(_, limits) = setting {
+        def.features = Features(def.features.0 | Features::LEVELS.0);
+        (def.strain_limit, def.tether_slack) = (*limits, *limits);
+    }
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let field = setting.field(case);
     if let Setting::Reference(_) = setting {

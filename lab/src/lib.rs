@@ -1,9 +1,11 @@
 //! Scenes, fabrics, metrics and pictures, shared by the program, the tests, the benches and training.
 
+pub mod against;
 pub mod atlas;
 pub mod bound;
 pub mod compare;
 pub mod cost;
+pub mod cusick;
 pub mod distill;
 pub mod fabric;
 pub mod front;
@@ -11,6 +13,7 @@ pub mod holdout;
 pub mod invariance;
 pub mod ledger;
 pub mod metrics;
+pub mod npz;
 pub mod picture;
 pub mod plot;
 pub mod scene;
