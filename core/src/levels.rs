@@ -7,7 +7,7 @@
 //! the chord between two particles, so that folds are free.
 
 use crate::force::Substep;
-use crate::layout::{Layout, copy, read, take, write};
+use crate::layout::{Layout, copy, read, span, take, write};
 use crate::limit::{Reach, Sheet, Sweeps};
 use crate::math::round16;
 use crate::prolong::Prolong;
@@ -170,7 +170,7 @@ fn thin(from: &[f32], first: usize, stride: usize, fine: &Level, to: &mut [f32],
     let step = if columns == nodes { 1 } else { 2 };
     for (row, to) in to.chunks_exact_mut(coarse.stride().max(1)).enumerate().take(node_rows) {
         let row = if rows == node_rows { row } else { (2 * row).min(rows.saturating_sub(1)) };
-        let from = crate::layout::span(from, first + row * stride, columns);
+        let from = span(from, first + row * stride, columns);
         for (to, from) in to.iter_mut().zip(from.iter().step_by(step)) {
             *to = *from;
         }
@@ -280,7 +280,9 @@ impl Cloth<'_> {
     fn cycle(&mut self, c: &Substep, target: f32, levels: &[Level], nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS]) {
         self.gather_nodes(levels, nodes);
         for k in (1..levels.len()).rev() {
-            let (nodes, coarser) = nodes.split_at_mut(k + 1);
+            let Some((nodes, coarser)) = nodes.split_at_mut_checked(k + 1) else {
+                continue;
+            };
             let (Some(level), Some(Some(nodes))) = (levels.get(k), nodes.last_mut()) else {
                 continue;
             };
@@ -323,7 +325,9 @@ impl Cloth<'_> {
     /// Fills the nodes of all levels with where their particles are, each level from the one below.
     fn gather_nodes(&self, levels: &[Level], nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS]) {
         for k in 1..levels.len() {
-            let (finer, nodes) = nodes.split_at_mut(k);
+            let Some((finer, nodes)) = nodes.split_at_mut_checked(k) else {
+                continue;
+            };
             let (Some(fine), Some(level), Some(Some(nodes))) = (levels.get(k - 1), levels.get(k), nodes.first_mut())
             else {
                 continue;

@@ -4,7 +4,7 @@
 //! A coarser row is spread along u once, to the columns of the finer sheet, and then mixed with the next one for every row
 //! between them.
 
-use crate::layout::{read, span, write};
+use crate::layout::{copy, read, span, write};
 use crate::levels::Level;
 use crate::math::lerp;
 use crate::simd::{Pass, Vector};
@@ -78,7 +78,7 @@ impl Prolong<'_> {
                 continue;
             };
             if columns == nodes {
-                out.copy_from_slice(ways);
+                copy(out, ways);
                 continue;
             }
             // the last cell may be shorter than the others
