@@ -247,6 +247,8 @@ enum taut_result
     TAUT_ERROR_NO_SUCH_COLLIDER = -26,
     // There are TAUT_MAX_COLLIDERS colliders already.
     TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
+    // Not even the cheapest settings fit the time.
+    TAUT_ERROR_NO_PLAN = -28,
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
@@ -323,6 +325,51 @@ typedef uint32_t taut_shape;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// How a sheet is held: what decides where it stretches, and how fast that grows with its grid.
+enum taut_hold
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // A whole edge is pinned: a banner, a flag, a cape along the shoulders.
+    TAUT_HOLD_EDGE = 0,
+    // Points of an edge are pinned, at most a few cells apart: a curtain.
+    TAUT_HOLD_HOOKS = 1,
+    // Two far corners are pinned.
+    TAUT_HOLD_CORNERS = 2,
+    // One particle is pinned.
+    TAUT_HOLD_CORNER = 3,
+    // Nothing is pinned, or an area: it lies on something.
+    TAUT_HOLD_LOOSE = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_hold taut_hold;
+#else
+typedef uint32_t taut_hold;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Where a planned stiffness comes from.
+enum taut_stiffness
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // As stiff as the step carries: taut_cloth_set_stiffness_uniform with 1e8 N/m four times. It stretches less than the
+    // fabric.
+    TAUT_STIFFNESS_STIFFEST = 0,
+    // The fabric's own.
+    TAUT_STIFFNESS_FABRIC = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_stiffness taut_stiffness;
+#else
+typedef uint32_t taut_stiffness;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -370,6 +417,60 @@ typedef struct {
     // Springs of all families that are on.
     uint32_t springs;
 } taut_counts;
+
+// What is to be planned. Comes from taut_plan_def_default(), then change what you need.
+typedef struct {
+    // Bytes of this structure. Set by taut_plan_def_default().
+    uint32_t size;
+    // Shows that the definition came from taut_plan_def_default().
+    uint32_t cookie;
+    // How the sheet is held, a taut_hold. Default TAUT_HOLD_CORNERS.
+    uint32_t hold;
+    // Largest structural strain at rest, above 0, at most 1 (0.05 is 5 %). Default 0.05.
+    float tolerance;
+    // CPU time of a frame in ns, above 0. Default infinite.
+    float budget_ns;
+    // CPU time of a plain particle-step on this machine in ns, above 0, at most 1e6: the time of a taut_cloth_step of a cloth
+    // without features divided by its particles and substeps. Default 7.
+    float plain_ns;
+    // Frames per second, 1 to 10,000. Default 60.
+    float rate_hz;
+    // Size of gravity in m/s^2, above 0, at most 1e4. Default 9.81.
+    float gravity_m_s2;
+    // Mass per area in kg/m^2, 1e-6 to 1e6. Default 0.2.
+    float density_kg_m2;
+    // The fabric's warp, weft, shear and bend in N/m, each 0 to 1e9. Default 2000, 2000, 60, 1.
+    float stiffness_n_m[4];
+} taut_plan_def;
+
+// Settings that a scene requires, and what to expect of them. The fields of the names of taut_cloth_def and taut_grid_def
+// go there.
+typedef struct {
+    // The solver, a taut_solver.
+    uint32_t solver;
+    // Substeps of a frame.
+    uint32_t substeps;
+    // Iterations of an implicit solver.
+    uint32_t cg_iterations;
+    // Spring families for the grid.
+    uint32_t families;
+    // Features that the plan needs, to be or-ed with those that the scene needs.
+    uint32_t features;
+    // Where the stiffness comes from, a taut_stiffness.
+    uint32_t stiffness;
+    // Radius of the inertia field in m; 0 = none.
+    float inertia_radius_m;
+    // For all three of strain_limit.
+    float strain_limit;
+    // For all three of tether_slack.
+    float tether_slack;
+    // Largest structural strain to expect at rest, with the margin that 95 % of the measured rows stay under.
+    float strain;
+    // CPU time to expect of a frame in ns.
+    float frame_ns;
+    // 1 where the strain is within the tolerance; 0 where these are the settings of the least strain that fit the time.
+    uint32_t meets;
+} taut_settings;
 
 // What a cloth is made of beside its grid. Comes from taut_cloth_def_default(), then change what you need. SI units; no
 // axis is "up".
@@ -633,6 +734,22 @@ TAUT_API taut_result taut_grid_counts(const taut_grid *from, taut_counts *out);
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: any.
 TAUT_API taut_result taut_grid_digest(const taut_grid *from, uint64_t *out);
+
+// The default plan: two far corners of a light woven, 5 % at rest, 60 frames per second, any time.
+//
+// Threads: any.
+TAUT_API taut_plan_def taut_plan_def_default(void);
+
+// The settings that a scene on a grid requires: the cheapest that meet the tolerance within the time, or, where none do, those
+// of the least strain that fit the time. They come from a table of measured rows; nothing is simulated.
+//
+// Errors: those of taut_grid_memory, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE,
+// TAUT_ERROR_STEP_SIZE (the rate), TAUT_ERROR_NO_PLAN: not even the cheapest fit the time.
+// Threads: any.
+TAUT_API
+taut_result taut_plan(const taut_grid_def *on,
+                      const taut_plan_def *def,
+                      taut_settings *out);
 
 // The default cloth for a grid: 60 Hz x 16 substeps, 0.2 kg/m^2, hanging from particle 0 in the direction -y. The grid
 // tells how many pins there can be; it may be NULL, which means a grid of 256 particles or more.
