@@ -464,7 +464,7 @@ typedef struct {
     float strain_limit;
     // For all three of tether_slack.
     float tether_slack;
-    // Largest structural strain to expect at rest, with the margin that 95 % of the measured rows stay under.
+    // Largest structural strain to expect at rest, with a margin that all measured rows stay under.
     float strain;
     // CPU time to expect of a frame in ns.
     float frame_ns;
