@@ -145,7 +145,7 @@ pub const METHODS: [Method; 6] =
     [Method::Plain, Method::Inertia, Method::Tethers, Method::Levels, Method::Whole, Method::Implicit];
 
 /// ln(strain) of a stiffest cloth = constant + grid ln(n) + step ln(g dt^2 / L), n = cells along the longer side; `margin`
-/// is what 95 % of the rows stay under.
+/// is how far the rows lie above it at most.
 #[derive(Clone, Copy, Debug)]
 struct StepLaw {
     constant: f32,

@@ -259,7 +259,7 @@ pub struct Plan {
     pub strain_limit: f32,
     /// For all three of tether_slack.
     pub tether_slack: f32,
-    /// Largest structural strain to expect at rest, with the margin that 95 % of the measured rows stay under.
+    /// Largest structural strain to expect at rest, with a margin that all measured rows stay under.
     pub strain: f32,
     /// CPU time to expect of a frame in ns.
     pub frame_ns: f32,

@@ -1,7 +1,7 @@
 //! Which rows the front has.
 
 use serde::{Deserialize, Serialize};
-use taut::{Families, Solver};
+use taut::{Families, Features, Solver};
 
 use crate::compare::Limits;
 use crate::scene::Scene;
@@ -200,7 +200,7 @@ impl Spec {
             for (i, fabric) in FABRICS.into_iter().enumerate() {
                 match set {
                     // the other fabrics where the drape is exact
-                    Set::Quick if i > 0 && !matches!(scene, Scene::Hang2 | Scene::Edge) => {}
+                    Set::Quick if i > 0 && *scene != Scene::Hang2 => {}
                     Set::Quick => quick(*scene, fabric, i == 0, &mut rows),
                     Set::Full => [16, 32, 64, 128].into_iter().for_each(|side| full(*scene, fabric, side, &mut rows)),
                 }
@@ -225,19 +225,18 @@ fn quick(scene: Scene, fabric: &'static str, first: bool, rows: &mut Vec<Spec>) 
         rows.extend([8, 16, 32].map(|substeps| Spec { substeps, ..base }));
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::StrainLimit(0.05), ..base }));
-        rows.extend([2, 8].map(|substeps| Spec { substeps, limits: Limits::Levels(0.05), ..base }));
+        rows.push(Spec { substeps: 8, limits: Limits::Levels(0.05), ..base });
     }
-    implicit(
-        new(SIDE, Correction::Analytic),
-        &[(Solver::Bdf2, 1, 10), (Solver::Bdf2, 2, 10), (Solver::ImplicitEuler, 1, 10)],
-        rows,
-    );
+    rows.push(Spec { substeps: 2, limits: Limits::Levels(0.05), ..new(SIDE, Correction::UniformInertia) });
+    implicit(new(SIDE, Correction::Analytic), &[(Solver::Bdf2, 1, 10), (Solver::ImplicitEuler, 1, 10)], rows);
     if first {
         for correction in [Correction::UniformInertia, Correction::AnalyticInertia] {
             rows.push(Spec { families: NO_BEND, ..new(SIDE, correction) });
         }
         rows.push(Spec { families: Families::STRUCTURAL, ..new(SIDE, Correction::UniformInertia) });
-        for side in [16, 64] {
+        // what needs a reference with colliders or wind at 64 x 64 is for the full set
+        let sides = if scene.features() == Features::NONE { [16, 64].as_slice() } else { &[16] };
+        for &side in sides {
             rows.push(new(side, Correction::Reference));
             for correction in [
                 Correction::Uniform,
@@ -303,7 +302,7 @@ mod tests {
             for correction in Correction::ALL {
                 for limits in ["none", "tethers", "strain_limit", "levels"] {
                     let found = rows.iter().filter(|r| r.correction == correction && r.limits.name() == limits);
-                    assert!(found.count() >= 2, "{scene}, {correction:?}, {limits}");
+                    assert!(found.count() >= 1, "{scene}, {correction:?}, {limits}");
                 }
             }
             assert!(rows.iter().any(|r| r.solver == Solver::Bdf2) && rows.iter().any(|r| r.families.0 == 1));
