@@ -12,7 +12,7 @@ use super::{positions, with_cloth};
 pub enum Smooth {
     /// Two particles on a spring each, pulled down.
     Spring,
-    /// Sixteen rows of two particles hang in their equilibrium and swing a little.
+    /// Five rows of two particles hang stretched by their weight and swing a little.
     Chain,
     /// A sheet swings in its plane along v within its linear range.
     Sheet,
@@ -36,7 +36,7 @@ impl Smooth {
         let plain = GridDef { families, ..GridDef::default() };
         match self {
             Smooth::Spring => GridDef { rows: 2, columns: 2, ..plain },
-            Smooth::Chain => GridDef { rows: 16, columns: 2, width_m: 1.0 / 15.0, ..plain },
+            Smooth::Chain => GridDef { rows: 5, columns: 2, width_m: 0.25, ..plain },
             Smooth::Sheet => GridDef { rows: 8, columns: 8, ..plain },
         }
     }
@@ -55,10 +55,11 @@ impl Smooth {
     /// Frames of the coarsest step and its rate: what resolves the motion, and the explicit solver carries.
     fn coarsest(self, solver: Solver) -> (u32, f32) {
         match (self, solver) {
+            (Smooth::Spring, Solver::Bdf2) => (160, 320.0),
             (Smooth::Spring, _) => (320, 640.0),
-            (Smooth::Chain, Solver::SymplecticEuler) => (400, 800.0),
-            (Smooth::Chain, Solver::ImplicitEuler) => (240, 480.0),
-            (Smooth::Chain, Solver::Bdf2) => (60, 120.0),
+            (Smooth::Chain, Solver::SymplecticEuler) => (200, 400.0),
+            (Smooth::Chain, Solver::ImplicitEuler) => (80, 160.0),
+            (Smooth::Chain, Solver::Bdf2) => (30, 60.0),
             (Smooth::Sheet, Solver::Bdf2) => (120, 240.0),
             (Smooth::Sheet, _) => (480, 960.0),
         }
@@ -71,21 +72,26 @@ impl Smooth {
         for p in 0..n {
             cloth.pin(p)?;
         }
-        let mut sag = 0.0;
+        let share = |row: usize| row as f64 / (m - 1) as f64;
+        // the lowest swing of a chain, and of a row of springs with a free end
+        let across = |row: usize| 0.1 * j0(J0_ZERO * (1.0 - share(row)).sqrt());
+        let along = |row: usize| 0.02 * (std::f64::consts::FRAC_PI_2 * row as f64 / (m as f64 - 0.5)).sin();
+        let (mut down, mut out) = (0.0, 0.0);
         for row in 1..m {
-            // the lowest modes: of a row of springs with a free end, and (nearly) of the chain
-            let along = (std::f64::consts::FRAC_PI_2 * row as f64 / (m as f64 - 0.5)).sin();
-            let across = j0(J0_ZERO * (1.0 - row as f64 / (m - 1) as f64).sqrt());
-            // the spring above a row carries it and all below
-            sag += (m - row) as f64 * stretch;
-            let [down, out] = match self {
-                Smooth::Spring => [0.2, 0.0],
-                Smooth::Chain => [sag, 0.02 * across],
-                Smooth::Sheet => [0.02 * along, 0.0],
-            };
+            match self {
+                Smooth::Spring => down = 1.2,
+                // the springs keep the length at which they hang, or fast oscillations of it would not be smooth
+                Smooth::Chain => {
+                    let length = share(1) + (m - row) as f64 * stretch;
+                    let aside = across(row) - out;
+                    down += (length * length - aside * aside).sqrt();
+                    out += aside;
+                }
+                Smooth::Sheet => down = share(row) + along(row),
+            }
             for column in 0..n {
                 let at = cloth.position(row * n + column)?;
-                cloth.set_position(row * n + column, at + Vector3::new(0.0, -down as f32, out as f32))?;
+                cloth.set_position(row * n + column, Vector3::new(at.x, -down as f32, out as f32))?;
             }
         }
         Ok(())
