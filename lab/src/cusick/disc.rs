@@ -1,9 +1,9 @@
 //! taut's disc on the pedestal, until it rests.
 
 use taut::field::FieldView;
-use taut::{Budget, Cloth, ClothDef, Error, Families, Grid, GridDef};
+use taut::{Budget, Cloth, ClothDef, Error, Families, Grid, GridDef, noise};
 
-use super::{DISC_M, Silhouette};
+use super::{DISC_M, PEDESTAL_M, Silhouette};
 use crate::metrics;
 use crate::scene::Scene;
 
@@ -13,6 +13,9 @@ const MOST_SUBSTEPS: u32 = 1024;
 
 /// Damping in 1/s: the overhang swings at some 10 Hz and is at rest within a second or two.
 const DAMPING_PER_S: f32 = 8.0;
+
+/// How far from flat the disc is laid, at its rim in m: no hand lays it flat, and the folds come from there.
+const LAID_M: f32 = 0.006;
 
 /// The drape is done when it is slower than this (root mean square of what hangs), not before the shortest time, and not
 /// waited for beyond the longest.
@@ -95,6 +98,11 @@ impl Disc {
         let mut cloth = Cloth::create(&grid, &def, &mut block)?;
         cloth.set_stiffness_field(&field);
         scene.set_up(&mut cloth, seed)?;
+        for i in (0..n * n).filter(|i| scene.has(*i, n, n)) {
+            let at = cloth.position(i)?;
+            let wave = laid_by_hand(at.x - DISC_M, at.z - DISC_M, seed);
+            cloth.set_position(i, at + taut::Vector3::new(0.0, wave, 0.0))?;
+        }
         let pinned = cloth.pin_count();
         let hanging = (0..n * n).filter(|i| scene.has(*i, n, n)).count().saturating_sub(pinned).max(1);
         let mass = f64::from(cloth.particle_mass_kg()) * hanging as f64;
@@ -127,6 +135,24 @@ impl Disc {
             seconds: frames as f32 / RATE_HZ,
         })
     }
+}
+
+/// How far a hand lays the disc out of flat at (x, z) in m: waves of [`LAID_M`] at the rim (root mean square) that fall to 0
+/// at the pedestal, whose strengths and places the seed draws.
+fn laid_by_hand(x: f32, z: f32, seed: u64) -> f32 {
+    const WAVES: std::ops::RangeInclusive<u32> = 1..=9;
+    let out = ((x.hypot(z) - PEDESTAL_M) / (DISC_M - PEDESTAL_M)).max(0.0);
+    if out == 0.0 {
+        return 0.0;
+    }
+    let angle = z.atan2(x);
+    // uniform in -1 to 1, so 1/3 in the square, and half of that around the circle
+    let each = LAID_M / (WAVES.count() as f32 / 6.0).sqrt();
+    let wave = |k: u32| {
+        let (strength, phase) = (noise::uniform(seed, 1000 + 2 * k), noise::uniform(seed, 1001 + 2 * k));
+        (2.0 * strength - 1.0) * (k as f32 * angle + std::f32::consts::TAU * phase).cos()
+    };
+    out * each * WAVES.map(wave).sum::<f32>()
 }
 
 /// The disc as a surface up to its very rim, which runs between the particles: absent particles next to it are put where
@@ -186,8 +212,6 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cusick::PEDESTAL_M;
-
     /// Deflection of the rim of a plate ring of Poisson ratio 0, clamped at `a` and free at `b`, under a load q per area
     /// with rigidity D: w = q r^4 / 64 D + c1 + c2 ln r + c3 r^2 + c4 r^2 ln r (Timoshenko). The shear force is 0 at b, which
     /// gives c4 = -q b^2 / 8 D; w'' = 0 at b and w = w' = 0 at a give the others.
@@ -225,6 +249,20 @@ mod tests {
             assert!((share - 1.0).abs() < within, "{side}: {share}");
             assert!(draped.silhouette.drape_coefficient() > 0.97);
         }
+    }
+
+    #[test]
+    fn hands_lay_discs_by_their_seeds() {
+        let rim = |seed: u64| -> Vec<f32> {
+            (0..360)
+                .map(|i| (i as f32).to_radians().sin_cos())
+                .map(|(s, c)| laid_by_hand(DISC_M * c, DISC_M * s, seed))
+                .collect()
+        };
+        let squares: f32 = (1..=200).flat_map(rim).map(|w| w * w).sum();
+        assert!(((squares / 72_000.0).sqrt() / LAID_M - 1.0).abs() < 0.1);
+        assert!(rim(1) == rim(1) && rim(1) != rim(2));
+        assert_eq!(laid_by_hand(PEDESTAL_M * 0.99, 0.0, 1), 0.0);
     }
 
     #[test]
