@@ -78,13 +78,16 @@
      TAUT_IF_(features, TAUT_FEATURE_MASK, 1) +                                                              \
      TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS, 4) +                                     \
      TAUT_IF_(features, TAUT_FEATURE_STRAIN_LIMIT | TAUT_FEATURE_LEVELS, 3) +                                \
-     TAUT_IF_(features, TAUT_FEATURE_LEVELS, 4) +                                                            \
      TAUT_IF_(features, TAUT_FEATURE_TARGETS, 15) +                                                          \
      TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, TAUT_CLOTH_IMPLICIT_(families)))
 #define TAUT_CLOTH_IMPLICIT_(families)                                                                       \
     (33 + TAUT_IF_(families, TAUT_FAMILY_SHEAR, 4) + TAUT_IF_(families, TAUT_FAMILY_BEND, 4))
 #define TAUT_CLOTH_LISTS_(rows, columns, features, max_pins)                                                                \
     (TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) +                                                        \
+     TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS,                                          \
+              TAUT_CLOTH_TETHERS_(TAUT_CLOTH_PLANE_(rows, columns))) +                                       \
+     TAUT_IF_(features, TAUT_FEATURE_LEVELS,                                                                 \
+              TAUT_IF_(~(uint32_t)(features), TAUT_FEATURE_MASK, TAUT_CLOTH_LEVELS_(rows, columns))) +       \
      TAUT_IF_(features, TAUT_FEATURE_COLLIDERS, TAUT_MAX_COLLIDERS * 32) +                                   \
      TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, 16 + TAUT_CLOTH_COARSE_(rows, columns)))
 #define TAUT_CLOTH_COARSE_(m, n)                                                                             \
@@ -96,6 +99,22 @@
     (((((size_t)(m) - 2) >> ((i) - 1)) >= 2 && (((size_t)(n) - 2) >> ((i) - 1)) >= 2)                        \
          ? 13 * TAUT_ROUND_16_(((((size_t)(m) - 2) >> (i)) + 5) * ((((size_t)(n) - 2) >> (i)) + 5) + 2)      \
          : 0)
+#define TAUT_CLOTH_TETHERS_(plane) (2 * TAUT_ROUND_16_(((plane) + 15) / 16))
+#define TAUT_CLOTH_LEVELS_(m, n)                                                                             \
+    (TAUT_CLOTH_NODES_(m, n, 1) + TAUT_CLOTH_NODES_(m, n, 2) + TAUT_CLOTH_NODES_(m, n, 3) +                  \
+     TAUT_CLOTH_NODES_(m, n, 4) + TAUT_CLOTH_NODES_(m, n, 5) + TAUT_CLOTH_NODES_(m, n, 6) +                  \
+     TAUT_CLOTH_NODES_(m, n, 7) + TAUT_CLOTH_NODES_(m, n, 8) + TAUT_CLOTH_NODES_(m, n, 9))
+#define TAUT_CLOTH_NODES_(m, n, k)                                                                           \
+    ((TAUT_CLOTH_HALVINGS_(m) >= (k) || TAUT_CLOTH_HALVINGS_(n) >= (k))                                      \
+         ? 11 * TAUT_CLOTH_NODE_PLANE_(m, n, k) + TAUT_CLOTH_TETHERS_(TAUT_CLOTH_NODE_PLANE_(m, n, k))       \
+         : 0)
+#define TAUT_CLOTH_NODE_PLANE_(m, n, k)                                                                      \
+    (TAUT_ROUND_16_(TAUT_CLOTH_NODE_COUNT_(n, k)) * TAUT_CLOTH_NODE_COUNT_(m, k) + 32)
+#define TAUT_CLOTH_NODE_COUNT_(n, k)                                                                         \
+    ((((size_t)(n) - 2) >> (TAUT_CLOTH_HALVINGS_(n) < (k) ? TAUT_CLOTH_HALVINGS_(n) : (k))) + 2)
+#define TAUT_CLOTH_HALVINGS_(n)                                                                              \
+    (((n) > 8) + ((n) > 16) + ((n) > 32) + ((n) > 64) + ((n) > 128) + ((n) > 256) + ((n) > 512) +            \
+     ((n) > 1024) + ((n) > 2048))
 #define TAUT_CLOTH_STRIDE_(columns) (TAUT_ROUND_16_(columns) + 16)
 #define TAUT_CLOTH_PLANE_(rows, columns) (TAUT_CLOTH_STRIDE_(columns) * ((size_t)(rows) + 4) + 32)
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
@@ -530,7 +549,7 @@ typedef struct {
     float strain_limit;
     // For all three of tether_slack.
     float tether_slack;
-    // Largest structural strain to expect at rest, with the margin that 95 % of the measured rows stay under.
+    // Largest structural strain to expect at rest, with a margin that all measured rows stay under.
     float strain;
     // CPU time to expect of a frame in ns.
     float frame_ns;
