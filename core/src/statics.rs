@@ -188,17 +188,17 @@ impl Sheet<'_, '_> {
         let (shear, two_right) = (l.shear && right && below, l.bend && column + 2 < level.columns);
         let two_below = l.bend && row + 2 < level.rows;
         let left = s.left.get(1..).unwrap_or(&[]);
-        let kinds: [(bool, usize, usize, [f32; 2], &[f32], (usize, usize)); 6] = [
-            (right, a, a + 1, [u, 0.0], s.u, (0, 1)),
-            (below, a, a + l.stride, [0.0, v], s.v, (1, 0)),
-            (shear, a, a + l.stride + 1, [u, v], s.right, (1, 1)),
-            (shear, a + 1, a + l.stride, [-u, v], left, (1, 1)),
-            (two_right, a, a + 2, [2.0 * u, 0.0], s.bend_u, (0, 2)),
-            (two_below, a, a + 2 * l.stride, [0.0, 2.0 * v], s.bend_v, (2, 0)),
-        ];
-        kinds.map(|(on, a, b, rest, plane, cells)| {
+        let spring = |on: bool, a: usize, b: usize, rest: [f32; 2], plane: &[f32], cells: (usize, usize)| {
             on.then(|| Spring { a, b, rest, k: self.k(plane, level, row, column, cells) })
-        })
+        };
+        [
+            spring(right, a, a + 1, [u, 0.0], s.u, (0, 1)),
+            spring(below, a, a + l.stride, [0.0, v], s.v, (1, 0)),
+            spring(shear, a, a + l.stride + 1, [u, v], s.right, (1, 1)),
+            spring(shear, a + 1, a + l.stride, [-u, v], left, (1, 1)),
+            spring(two_right, a, a + 2, [2.0 * u, 0.0], s.bend_u, (0, 2)),
+            spring(two_below, a, a + 2 * l.stride, [0.0, 2.0 * v], s.bend_v, (2, 0)),
+        ]
     }
 
     /// Dynamic relaxation with a step of 1. Whether it came to rest.
