@@ -37,6 +37,8 @@ impl Cloth<'_> {
 
     /// Names what a frame that was not finite would have had to do without. The pin targets, the forces and the ways of
     /// colliders and targets are dropped for good on the way; positions and velocities are left as they come.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn find_cause(&mut self) -> StepFlags {
         if self.pull.iter().any(|p| !all_finite(p)) {
             return StepFlags::NON_FINITE_FORCE;
@@ -79,6 +81,7 @@ impl Cloth<'_> {
     }
 
     /// Whether the frame, stepped again with the inputs that are left, stays finite.
+    #[inline(never)]
     fn stays_finite(&mut self) -> bool {
         self.back_to_good();
         self.implicit.reset();

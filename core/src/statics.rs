@@ -94,14 +94,12 @@ struct Level {
     finest: bool,
 }
 
-/// The springs that start at a particle: where they end, rest vector, N/m, whether structural. The second diagonal
-/// starts at the next column.
+/// A spring: its ends, rest vector from a to b in m, N/m.
 struct Spring {
     a: usize,
     b: usize,
     rest: [f32; 2],
     k: f32,
-    structural: bool,
 }
 
 impl Sheet<'_, '_> {
@@ -180,31 +178,27 @@ impl Sheet<'_, '_> {
         read(plane, at)
     }
 
-    /// Calls `visit` for every spring that starts in the cell right below a particle.
-    #[inline(always)]
-    fn each_spring_from(&self, level: &Level, row: usize, column: usize, mut visit: impl FnMut(Spring)) {
+    /// The springs that start in the cell right below a particle. Apart, so that it is in the program once.
+    #[inline(never)]
+    fn springs_from(&self, level: &Level, row: usize, column: usize) -> [Option<Spring>; 6] {
         let (l, s) = (self.layout, self.springs);
         let [u, v] = level.cell;
         let a = l.at(row, column);
         let (right, below) = (column + 1 < level.columns, row + 1 < level.rows);
-        let k = |plane: &[f32], cells: (usize, usize)| self.k(plane, level, row, column, cells);
-        if right {
-            visit(Spring { a, b: a + 1, rest: [u, 0.0], k: k(s.u, (0, 1)), structural: true });
-        }
-        if below {
-            visit(Spring { a, b: a + l.stride, rest: [0.0, v], k: k(s.v, (1, 0)), structural: true });
-        }
-        if l.shear && right && below {
-            visit(Spring { a, b: a + l.stride + 1, rest: [u, v], k: k(s.right, (1, 1)), structural: false });
-            let left = s.left.get(1..).unwrap_or(&[]);
-            visit(Spring { a: a + 1, b: a + l.stride, rest: [-u, v], k: k(left, (1, 1)), structural: false });
-        }
-        if l.bend && column + 2 < level.columns {
-            visit(Spring { a, b: a + 2, rest: [2.0 * u, 0.0], k: k(s.bend_u, (0, 2)), structural: false });
-        }
-        if l.bend && row + 2 < level.rows {
-            visit(Spring { a, b: a + 2 * l.stride, rest: [0.0, 2.0 * v], k: k(s.bend_v, (2, 0)), structural: false });
-        }
+        let (shear, two_right) = (l.shear && right && below, l.bend && column + 2 < level.columns);
+        let two_below = l.bend && row + 2 < level.rows;
+        let left = s.left.get(1..).unwrap_or(&[]);
+        let spring = |on: bool, a: usize, b: usize, rest: [f32; 2], plane: &[f32], cells: (usize, usize)| {
+            on.then(|| Spring { a, b, rest, k: self.k(plane, level, row, column, cells) })
+        };
+        [
+            spring(right, a, a + 1, [u, 0.0], s.u, (0, 1)),
+            spring(below, a, a + l.stride, [0.0, v], s.v, (1, 0)),
+            spring(shear, a, a + l.stride + 1, [u, v], s.right, (1, 1)),
+            spring(shear, a + 1, a + l.stride, [-u, v], left, (1, 1)),
+            spring(two_right, a, a + 2, [2.0 * u, 0.0], s.bend_u, (0, 2)),
+            spring(two_below, a, a + 2 * l.stride, [0.0, 2.0 * v], s.bend_v, (2, 0)),
+        ]
     }
 
     /// Dynamic relaxation with a step of 1. Whether it came to rest.
@@ -263,7 +257,7 @@ impl Sheet<'_, '_> {
         }
         for row in 0..level.rows {
             for column in 0..level.columns {
-                self.each_spring_from(level, row, column, |spring| {
+                for spring in self.springs_from(level, row, column).into_iter().flatten() {
                     let p = pull(&s.d, &spring);
                     let k = MASS * spring.k;
                     let [u, v] = p.direction.map(f32::abs);
@@ -273,7 +267,7 @@ impl Sheet<'_, '_> {
                         add(mass, spring.a, k);
                         add(mass, spring.b, k);
                     }
-                });
+                }
             }
         }
         // nobody moves a pinned particle
@@ -297,14 +291,14 @@ impl Sheet<'_, '_> {
                 let at = self.layout.at(row, column);
                 add(vu, at, weight[0] * read(iu, at));
                 add(vv, at, weight[1] * read(iv, at));
-                self.each_spring_from(level, row, column, |spring| {
+                for spring in self.springs_from(level, row, column).into_iter().flatten() {
                     let p = pull(d, &spring);
                     let [u, v] = [p.force * p.direction[0], p.force * p.direction[1]];
                     add(vu, spring.a, u * read(iu, spring.a));
                     add(vu, spring.b, -u * read(iu, spring.b));
                     add(vv, spring.a, v * read(iv, spring.a));
                     add(vv, spring.b, -v * read(iv, spring.b));
-                });
+                }
             }
         }
     }
@@ -353,11 +347,10 @@ impl Sheet<'_, '_> {
         let mut largest = 0.0;
         for row in 0..level.rows {
             for column in 0..level.columns {
-                self.each_spring_from(level, row, column, |spring| {
-                    if spring.structural {
-                        largest = max(pull(&s.d, &spring).strain, largest);
-                    }
-                });
+                // the structural ones come first
+                for spring in self.springs_from(level, row, column).into_iter().take(2).flatten() {
+                    largest = max(pull(&s.d, &spring).strain, largest);
+                }
             }
         }
         largest
