@@ -223,6 +223,11 @@ public:
 
     [[nodiscard]] taut_result budget(taut_budget_report &out) noexcept { return taut_cloth_budget(handle_, &out); }
 
+    [[nodiscard]] taut_result predict_stretch(taut_budget_report &out) noexcept
+    {
+        return taut_cloth_predict_stretch(handle_, &out);
+    }
+
     // Matter: which particles exist, and what they weigh.
 
     [[nodiscard]] taut_result set_mask(uint32_t count, const uint8_t *present) noexcept

@@ -51,7 +51,7 @@ pub struct BudgetReport {
     pub hinge_fraction: f32,
     /// Predicted strain of the most stretched structural spring, when the cloth hangs at rest from a whole edge or from the
     /// two corners of one: within 15 % of what will be measured, up to [`crate::STRETCH_RANGE`]. 0 where the flags say that it is
-    /// not known.
+    /// not known; only [`crate::Cloth::predict_stretch`] knows it.
     pub stretch: f32,
     /// What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
     /// unless `stretch` is known on the way there too. Infinite where nothing bounds it.

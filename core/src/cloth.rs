@@ -263,9 +263,8 @@ impl<'a> Cloth<'a> {
         self.wake();
     }
 
-    /// What the budget makes of the stiffness with the pins as they are, and what stretch to expect. Finding the latter for a sheet that
-    /// hangs from an edge takes some hundred passes over the springs, about the time of a second of the cloth; else it is
-    /// O(particles + pins^2).
+    /// What the budget makes of the stiffness with the pins as they are, and the bound of the stretch: O(particles + pins^2).
+    /// [`Cloth::predict_stretch`] tells the stretch to expect.
     ///
     /// Error: [`Error::NoStiffness`].
     pub fn budget(&mut self) -> Result<BudgetReport, Error> {
@@ -273,7 +272,8 @@ impl<'a> Cloth<'a> {
             return Err(Error::NoStiffness);
         }
         self.refresh(true);
-        Ok(self.predict_stretch(self.report))
+        let report = self.report;
+        Ok(in_default_environment(|| self.predict(report, false)))
     }
 
     /// Computes inertia and springs anew where pins or stiffness have changed. The inertia field follows the pins; a

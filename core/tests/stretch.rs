@@ -53,7 +53,7 @@ impl Case {
     /// What is predicted, and what is measured once the largest strain stands still.
     fn measured(&self) -> (BudgetReport, Option<f32>) {
         let mut c = self.hung();
-        let report = c.budget().unwrap();
+        let report = c.predict_stretch().unwrap();
         (report, rest(&mut c))
     }
 }
@@ -133,7 +133,7 @@ fn a_row_of_columns_is_the_closed_form() {
         let mut c = cloth(&squares(rows, 5, 0.05, Families::STRUCTURAL), &def);
         c.set_stiffness_uniform([k; 4]).unwrap();
         (0..5).for_each(|p| c.pin(p).unwrap());
-        let report = c.budget().unwrap();
+        let report = c.predict_stretch().unwrap();
         assert_eq!((report.cut_fraction, report.flags), (0.0, BudgetFlags(0)));
         let strain = (rows - 1) as f32 * c.particle_mass_kg() * 9.81 / (k * 0.05);
         near(report.stretch.into(), strain.into(), 0.015, "strain at the top");
@@ -148,7 +148,7 @@ fn every_edge_is_an_edge() {
         let mut c = cloth(&squares(16, 16, 1.0 / 15.0, Families::ALL), &def);
         c.set_stiffness_uniform(STIFF).unwrap();
         pins.iter().for_each(|p| c.pin(*p).unwrap());
-        let report = c.budget().unwrap();
+        let report = c.predict_stretch().unwrap();
         assert_eq!(report.flags, BudgetFlags(0));
         f64::from(report.stretch)
     };
@@ -199,9 +199,9 @@ fn what_is_not_known_is_said_and_bounded() {
         c.set_stiffness_uniform(STIFF).unwrap();
         c.pin(0).unwrap();
         c.pin(15).unwrap();
-        assert_eq!(c.budget().unwrap().flags, BudgetFlags(0), "before {i}");
+        assert_eq!(c.predict_stretch().unwrap().flags, BudgetFlags(0), "before {i}");
         change(&mut c);
-        let report = c.budget().unwrap();
+        let report = c.predict_stretch().unwrap();
         assert_eq!((report.flags, report.stretch), (BudgetFlags::STRETCH_UNKNOWN, 0.0), "{i}");
         for _ in 0..60 {
             steps(&mut c, 1);
@@ -213,11 +213,11 @@ fn what_is_not_known_is_said_and_bounded() {
     // nothing bounds what is pulled apart, nor what falls
     let mut c = cloth(&squares(8, 8, 0.1, Families::ALL), &ClothDef::default());
     c.set_stiffness_uniform(STIFF).unwrap();
-    assert_eq!(c.budget().unwrap().stretch_bound, f32::INFINITY);
+    assert_eq!(c.predict_stretch().unwrap().stretch_bound, f32::INFINITY);
     c.pin(0).unwrap();
     c.pin(7).unwrap();
     c.set_position(7, Vector3::new(0.8, 0.0, 0.0)).unwrap();
-    assert_eq!(c.budget().unwrap().stretch_bound, f32::INFINITY);
+    assert_eq!(c.predict_stretch().unwrap().stretch_bound, f32::INFINITY);
 }
 
 /// Limits that this cloth keeps cap the prediction; those that it may exceed are named. The first two are the contract of
@@ -230,7 +230,7 @@ fn limits_that_are_not_kept_are_named() {
         c.set_stiffness_uniform([300.0, 300.0, 100.0, 5.0]).unwrap();
         c.pin(0).unwrap();
         c.pin(side as usize - 1).unwrap();
-        c.budget().unwrap()
+        c.predict_stretch().unwrap()
     };
     for (substeps, limit, side) in [(16, 0.1, 32), (32, 0.05, 32), (64, 0.05, 64)] {
         let r = report(Features::LEVELS, substeps, limit, side);

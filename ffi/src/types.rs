@@ -402,7 +402,8 @@ pub struct BudgetReport {
     /// Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     pub hinge_fraction: f32,
     /// Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
-    /// from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown.
+    /// from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown;
+    /// only taut_cloth_predict_stretch knows it.
     pub stretch: f32,
     /// What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
     /// unless stretch is known on the way there too. Infinite where nothing bounds it.

@@ -235,6 +235,7 @@ int run(const void *file, size_t size)
     REQUIRE(pins == 2);
     taut_budget_report report;
     DONE(cloth.budget(report));
+    DONE(cloth.predict_stretch(report));
     DONE(cloth.set_velocity(30, {0.0f, 0.0f, 0.1f}));
     DONE(cloth.add_force(30, {0.0f, 0.0f, 0.01f}));
     DONE(cloth.set_position(31, {1.0f, -0.45f, 0.01f}));

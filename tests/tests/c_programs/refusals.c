@@ -253,6 +253,7 @@ static int handles(void)
         REFUSED(a, taut_cloth_set_stiffness_field(c, 1, 2, 2, local));
         REFUSED(a, taut_cloth_load_stiffness(c, field[0], field_size[0], NULL));
         REFUSED(a, taut_cloth_budget(c, &report));
+        REFUSED(a, taut_cloth_predict_stretch(c, &report));
         REFUSED(a, taut_cloth_pin(c, 0));
         REFUSED(a, taut_cloth_pin_move(c, 0, world));
         REFUSED(a, taut_cloth_unpin(c, 0));
@@ -440,6 +441,7 @@ static int stiffness(void)
     k[35] = -1;
     REFUSED(TAUT_ERROR_NEGATIVE, taut_cloth_set_stiffness_field(cloth, 4, 3, 3, k));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_budget(cloth, NULL));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_predict_stretch(cloth, NULL));
 
     // files: each mistake is found by both calls, and the fabric is not written
     taut_field info;
