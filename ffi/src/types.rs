@@ -128,8 +128,8 @@ const _: () = {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
-    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
+    /// 0.25 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.31 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
