@@ -142,8 +142,8 @@ pub unsafe extern "C" fn taut_cloth_predict_stretch(cloth: *mut ClothHandle, out
     }
 }
 
-/// What the budget makes of the stiffness with the pins as they are, and what stretch to expect: told before the first step,
-/// and kept.
+/// What the budget makes of the stiffness with the pins as they are, and the bound of the stretch: told before the first
+/// step, and kept. What stretch to expect: taut_cloth_predict_stretch.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 /// Threads: changes the cloth.

@@ -249,7 +249,7 @@ pub(crate) mod tests {
         assert_eq!((x.shape, x.values), (vec![2, 3], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.5]));
         assert_eq!(npz.floats("y").unwrap().values, [1.5, -2.0]);
         assert_eq!(npz.indices("i").unwrap().values, [7, 0]);
-        for (array, named) in [("z", "not there"), ("i", "float32 or float64 expected")] {
+        for (array, named) in [("z", "not there"), ("i", "float32 or float64")] {
             let e = npz.floats(array).unwrap_err().to_string();
             assert!(e.contains("a.npz") && e.contains(&format!("`{array}`")) && e.contains(named), "{e}");
         }

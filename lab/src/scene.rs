@@ -211,9 +211,8 @@ impl Scene {
             }
             None => {}
         }
-        match self {
-            Scene::Flag => cloth.set_air(&Air { wind_m_s: [WIND_M_S, 0.0, 0.0], gust: GUST, ..Air::default() })?,
-            _ => {}
+        if self == Scene::Flag {
+            cloth.set_air(&Air { wind_m_s: [WIND_M_S, 0.0, 0.0], gust: GUST, ..Air::default() })?;
         }
         Ok(())
     }
