@@ -327,8 +327,8 @@ enum taut_budget
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
-    // damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
+    // 0.25 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    // damping (1/s) it comes to rest without any limit on speed or compression. 0.31 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     // 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
@@ -663,7 +663,8 @@ typedef struct {
     // Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     float hinge_fraction;
     // Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
-    // from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown.
+    // from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown;
+    // only taut_cloth_predict_stretch knows it.
     float stretch;
     // What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
     // unless stretch is known on the way there too. Infinite where nothing bounds it.
@@ -939,14 +940,22 @@ taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
                                       size_t size,
                                       taut_fabric *out_fabric);
 
-// What the budget makes of the stiffness with the pins as they are, and what stretch to expect: told before the first step,
-// and kept. Where a sheet hangs from an edge it is solved for its rest, which takes about the time of a second of the cloth.
+// The report of taut_cloth_budget with the stretch to expect, and a sharper bound where that is known. The rest of a sheet that
+// hangs from an edge is searched for, which takes from milliseconds at 16 x 16 to seconds at 64 x 64: for a loading screen,
+// not for a frame.
+//
+// Errors: those of taut_cloth_budget.
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_predict_stretch(taut_cloth *cloth,
+                                       taut_budget_report *out);
+
+// What the budget makes of the stiffness with the pins as they are, and the bound of the stretch: told before the first
+// step, and kept. What stretch to expect: taut_cloth_predict_stretch.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
-TAUT_API
-taut_result taut_cloth_budget(taut_cloth *cloth,
-                              taut_budget_report *out);
+TAUT_API taut_result taut_cloth_budget(taut_cloth *cloth, taut_budget_report *out);
 
 // Chooses which particles exist, by a byte for each of the count particles: 0 is absent, everything else is present. Needs
 // TAUT_FEATURE_MASK; at first all are present. May be called at any time, so a cloth can tear.
