@@ -60,8 +60,8 @@ impl Smooth {
             (Smooth::Chain, Solver::SymplecticEuler) => (200, 400.0),
             (Smooth::Chain, Solver::ImplicitEuler) => (80, 160.0),
             (Smooth::Chain, Solver::Bdf2) => (30, 60.0),
-            (Smooth::Sheet, Solver::Bdf2) => (120, 240.0),
-            (Smooth::Sheet, _) => (480, 960.0),
+            (Smooth::Sheet, Solver::Bdf2) => (60, 240.0),
+            (Smooth::Sheet, _) => (240, 960.0),
         }
     }
 
@@ -132,7 +132,7 @@ pub fn order(scene: Smooth, solver: Solver) -> Result<Order, Error> {
             speed_limit: 0.0,
             compression_limit: false,
             solver,
-            cg_iterations: 60,
+            cg_iterations: 30,
             features: if solver == Solver::SymplecticEuler { Features::NONE } else { Features::IMPLICIT },
             ..ClothDef::default()
         };
