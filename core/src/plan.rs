@@ -213,10 +213,10 @@ pub fn plan(grid: &Grid, def: &PlanDef) -> Result<Plan, Error> {
         check(def)?;
         let mut best: Option<Plan> = None;
         for method in METHODS {
-            if let Some(next) = of_method(grid, def, method) {
-                if best.is_none_or(|b| better(&next, &b)) {
-                    best = Some(next);
-                }
+            if let Some(next) = of_method(grid, def, method)
+                && best.is_none_or(|b| better(&next, &b))
+            {
+                best = Some(next);
             }
         }
         best.ok_or(Error::NoPlan)
