@@ -185,11 +185,10 @@ fn fit(rows: &[(Vec<f64>, f64)]) -> Fit {
     let n = rows.first().map_or(0, |r| r.0.len());
     let mut a = vec![vec![0.0; n + 1]; n];
     for (x, y) in rows {
-        for i in 0..n {
-            for j in 0..n {
-                a[i][j] += x[i] * x[j];
+        for (row, xi) in a.iter_mut().zip(x) {
+            for (sum, xj) in row.iter_mut().zip(x.iter().chain([y])) {
+                *sum += xi * xj;
             }
-            a[i][n] += x[i] * y;
         }
     }
     for (i, row) in a.iter_mut().enumerate() {

@@ -55,10 +55,12 @@ pub fn question(scene: Scene, fabric: &Fabric, tolerance: f32) -> PlanDef {
 /// A plan as a row.
 pub fn row_of(plan: &Plan, scene: Scene, fabric: &'static str, side: u32) -> Spec {
     let has = |f| plan.features.contains(f);
-    let limits = match () {
-        () if has(Features::LEVELS) => Limits::Levels(plan.limit),
-        () if has(Features::TETHERS) => Limits::Tethers(0.0),
-        () => Limits::None,
+    let limits = if has(Features::LEVELS) {
+        Limits::Levels(plan.limit)
+    } else if has(Features::TETHERS) {
+        Limits::Tethers(0.0)
+    } else {
+        Limits::None
     };
     let correction = match plan.stiffness {
         PlanStiffness::Fabric => Correction::Analytic,
