@@ -133,8 +133,8 @@ mod tests {
         assert!((picture.shading[32 * SIDE + 32] - flat).abs() < 1e-5);
         // turned by 45 degrees about the vertical, either side is as bright as the other
         let turned = |side: f32| {
-            let x: Vec<[f32; 3]> =
-                x.iter().map(|[u, v, _]| [0.5 + 0.7071 * (u - 0.5), *v, side * 0.7071 * u]).collect();
+            let h = std::f32::consts::FRAC_1_SQRT_2;
+            let x: Vec<[f32; 3]> = x.iter().map(|[u, v, _]| [0.5 + h * (u - 0.5), *v, side * h * u]).collect();
             FRONT.picture(&mesh, &x).shading[32 * SIDE + 32]
         };
         assert!(turned(-1.0) > flat && turned(1.0) < flat);
