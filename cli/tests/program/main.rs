@@ -5,4 +5,5 @@ mod correct;
 mod drape;
 mod info;
 mod interrupt;
+mod measure;
 mod run;
