@@ -6,5 +6,6 @@ mod drape;
 mod front;
 mod info;
 mod interrupt;
+mod measure;
 mod plan;
 mod run;
