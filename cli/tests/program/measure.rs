@@ -34,7 +34,7 @@ fn write_reference(folder: &Path) -> Vec<f32> {
     let uv = bytes((0..25).flat_map(|i| [share(i % 5), share(i / 5)]));
     let cells = (0..16).map(|i| i / 4 * 5 + i % 4);
     let triangles = cells.flat_map(|a| [a, a + 1, a + 6, a, a + 6, a + 5]);
-    let triangles: Vec<u8> = triangles.flat_map(|v| (v as i32).to_le_bytes()).collect();
+    let triangles: Vec<u8> = triangles.flat_map(|v: i32| v.to_le_bytes()).collect();
     npz(&folder.join("mesh.npz"), &[("uv", "<f4", "(25, 2)", uv), ("tris", "<i4", "(32, 3)", triangles)]);
     let x: Vec<f32> = (0..25).flat_map(|i| [share(i % 5) - 0.5, 0.0, share(i / 5) - 1.0]).collect();
     npz(&folder.join("flat.npz"), &[("x_final", "<f4", "(25, 3)", bytes(x.clone()))]);
