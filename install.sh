@@ -54,7 +54,7 @@ pointer_bytes=$(getconf LONG_BIT | awk '{ print $1 / 8 }')
 root=${DESTDIR:-}$prefix
 lib=$root/lib
 mkdir -p "$root/include" "$lib/cmake/taut" "$lib/pkgconfig" "$root/share/doc/taut"
-install -m 644 include/taut.h include/taut.hpp "$root/include"
+install -m 644 include/taut.h include/taut.hpp include/taut_generator.h "$root/include"
 install -m 644 "$build/release/libtaut.a" "$lib"
 strip -S "$lib/libtaut.a" # debugging information of Rust's own library, most of the file
 install -m 755 "$build/release/$shared_built" "$lib/$shared_file"

@@ -78,13 +78,16 @@
      TAUT_IF_(features, TAUT_FEATURE_MASK, 1) +                                                              \
      TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS, 4) +                                     \
      TAUT_IF_(features, TAUT_FEATURE_STRAIN_LIMIT | TAUT_FEATURE_LEVELS, 3) +                                \
-     TAUT_IF_(features, TAUT_FEATURE_LEVELS, 4) +                                                            \
      TAUT_IF_(features, TAUT_FEATURE_TARGETS, 15) +                                                          \
      TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, TAUT_CLOTH_IMPLICIT_(families)))
 #define TAUT_CLOTH_IMPLICIT_(families)                                                                       \
     (33 + TAUT_IF_(families, TAUT_FAMILY_SHEAR, 4) + TAUT_IF_(families, TAUT_FAMILY_BEND, 4))
 #define TAUT_CLOTH_LISTS_(rows, columns, features, max_pins)                                                                \
     (TAUT_ROUND_16_((size_t)7 * (size_t)(max_pins)) +                                                        \
+     TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS,                                          \
+              TAUT_CLOTH_TETHERS_(TAUT_CLOTH_PLANE_(rows, columns))) +                                       \
+     TAUT_IF_(features, TAUT_FEATURE_LEVELS,                                                                 \
+              TAUT_IF_(~(uint32_t)(features), TAUT_FEATURE_MASK, TAUT_CLOTH_LEVELS_(rows, columns))) +       \
      TAUT_IF_(features, TAUT_FEATURE_COLLIDERS, TAUT_MAX_COLLIDERS * 32) +                                   \
      TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, 16 + TAUT_CLOTH_COARSE_(rows, columns)))
 #define TAUT_CLOTH_COARSE_(m, n)                                                                             \
@@ -96,6 +99,22 @@
     (((((size_t)(m) - 2) >> ((i) - 1)) >= 2 && (((size_t)(n) - 2) >> ((i) - 1)) >= 2)                        \
          ? 13 * TAUT_ROUND_16_(((((size_t)(m) - 2) >> (i)) + 5) * ((((size_t)(n) - 2) >> (i)) + 5) + 2)      \
          : 0)
+#define TAUT_CLOTH_TETHERS_(plane) (2 * TAUT_ROUND_16_(((plane) + 15) / 16))
+#define TAUT_CLOTH_LEVELS_(m, n)                                                                             \
+    (TAUT_CLOTH_NODES_(m, n, 1) + TAUT_CLOTH_NODES_(m, n, 2) + TAUT_CLOTH_NODES_(m, n, 3) +                  \
+     TAUT_CLOTH_NODES_(m, n, 4) + TAUT_CLOTH_NODES_(m, n, 5) + TAUT_CLOTH_NODES_(m, n, 6) +                  \
+     TAUT_CLOTH_NODES_(m, n, 7) + TAUT_CLOTH_NODES_(m, n, 8) + TAUT_CLOTH_NODES_(m, n, 9))
+#define TAUT_CLOTH_NODES_(m, n, k)                                                                           \
+    ((TAUT_CLOTH_HALVINGS_(m) >= (k) || TAUT_CLOTH_HALVINGS_(n) >= (k))                                      \
+         ? 11 * TAUT_CLOTH_NODE_PLANE_(m, n, k) + TAUT_CLOTH_TETHERS_(TAUT_CLOTH_NODE_PLANE_(m, n, k))       \
+         : 0)
+#define TAUT_CLOTH_NODE_PLANE_(m, n, k)                                                                      \
+    (TAUT_ROUND_16_(TAUT_CLOTH_NODE_COUNT_(n, k)) * TAUT_CLOTH_NODE_COUNT_(m, k) + 32)
+#define TAUT_CLOTH_NODE_COUNT_(n, k)                                                                         \
+    ((((size_t)(n) - 2) >> (TAUT_CLOTH_HALVINGS_(n) < (k) ? TAUT_CLOTH_HALVINGS_(n) : (k))) + 2)
+#define TAUT_CLOTH_HALVINGS_(n)                                                                              \
+    (((n) > 8) + ((n) > 16) + ((n) > 32) + ((n) > 64) + ((n) > 128) + ((n) > 256) + ((n) > 512) +            \
+     ((n) > 1024) + ((n) > 2048))
 #define TAUT_CLOTH_STRIDE_(columns) (TAUT_ROUND_16_(columns) + 16)
 #define TAUT_CLOTH_PLANE_(rows, columns) (TAUT_CLOTH_STRIDE_(columns) * ((size_t)(rows) + 4) + 32)
 #define TAUT_ROUND_16_(n) (((size_t)(n) + 15) / 16 * 16)
@@ -166,11 +185,46 @@
 #define TAUT_MAX_COLLIDERS 32
 
 // A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
-// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+// positions, velocities, pins and step index are those before the call; pin targets, forces and the ways of colliders and
+// targets in the frame are dropped. One of the TAUT_STEP_NON_FINITE_* names the cause beside it.
 #define TAUT_STEP_NON_FINITE 1
 
 // A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
 #define TAUT_STEP_ASLEEP 2
+
+// A flag of taut_cloth_step: a pin is not finite, or without the ways of the pins the frame would have stayed finite.
+#define TAUT_STEP_NON_FINITE_PIN 4
+
+// A flag of taut_cloth_step: the air is not finite, or in still air the frame would have stayed finite.
+#define TAUT_STEP_NON_FINITE_AIR 8
+
+// A flag of taut_cloth_step: a force is not finite, or without the forces of taut_cloth_add_force the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_FORCE 16
+
+// A flag of taut_cloth_step: a collider is not finite, or without the ways of the colliders the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_COLLIDER 32
+
+// A flag of taut_cloth_step: a skinned target is not finite, or without the ways of the targets the frame would have stayed
+// finite.
+#define TAUT_STEP_NON_FINITE_TARGET 64
+
+// A flag of taut_cloth_step: none of these; positions, velocities or springs themselves run away.
+#define TAUT_STEP_NON_FINITE_STATE 128
+
+// A flag of taut_budget_report: the predicted stretch is above 0.2. It is not within 15 % of what will be, and the cloth
+// will look like rubber.
+#define TAUT_BUDGET_ABOVE_RANGE 1
+
+// A flag of taut_budget_report: there is no prediction. The cloth does not hang from a whole straight edge or from its two
+// corners with nothing but its weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners),
+// or its rest was not found. The bound holds.
+#define TAUT_BUDGET_STRETCH_UNKNOWN 2
+
+// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
+// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+#define TAUT_BUDGET_LIMIT_NOT_KEPT 4
 
 // Bytes of the block of a grid, on every target.
 #define TAUT_GRID_BYTES 64
@@ -247,9 +301,17 @@ enum taut_result
     TAUT_ERROR_NO_SUCH_COLLIDER = -26,
     // There are TAUT_MAX_COLLIDERS colliders already.
     TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
+    // Not even the cheapest settings fit the time.
+    TAUT_ERROR_NO_PLAN = -28,
     // The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     // on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
+    // A file cannot be opened or read (taut_generator.h).
+    TAUT_ERROR_FILE = -101,
+    // The generator knows no word of the description (taut_generator.h).
+    TAUT_ERROR_NO_KNOWN_WORD = -102,
+    // The network of a generator file cannot be run, or answers with what is no stiffness (taut_generator.h).
+    TAUT_ERROR_INFERENCE = -103,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -265,8 +327,8 @@ enum taut_budget
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
-    // damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
+    // 0.25 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    // damping (1/s) it comes to rest without any limit on speed or compression. 0.31 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     // 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
@@ -323,6 +385,76 @@ typedef uint32_t taut_shape;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// The vectors that a cloth is stepped in. Each gives the same bits; only the time differs.
+enum taut_width
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // One number at a time: every processor.
+    TAUT_WIDTH_SCALAR = 0,
+    // 4 numbers: every x86_64.
+    TAUT_WIDTH_SSE2 = 1,
+    // 8 numbers: x86_64 with AVX2.
+    TAUT_WIDTH_AVX2 = 2,
+    // 16 numbers: x86_64 with AVX-512F.
+    TAUT_WIDTH_AVX512 = 3,
+    // 4 numbers: every aarch64.
+    TAUT_WIDTH_NEON = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_width taut_width;
+#else
+typedef uint32_t taut_width;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How a sheet is held: what decides where it stretches, and how fast that grows with its grid.
+enum taut_hold
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // A whole edge is pinned: a banner, a flag, a cape along the shoulders.
+    TAUT_HOLD_EDGE = 0,
+    // Points of an edge are pinned, at most a few cells apart: a curtain.
+    TAUT_HOLD_HOOKS = 1,
+    // Two far corners are pinned.
+    TAUT_HOLD_CORNERS = 2,
+    // One particle is pinned.
+    TAUT_HOLD_CORNER = 3,
+    // Nothing is pinned, or an area: it lies on something.
+    TAUT_HOLD_LOOSE = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_hold taut_hold;
+#else
+typedef uint32_t taut_hold;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Where a planned stiffness comes from.
+enum taut_stiffness
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // As stiff as the step carries: taut_cloth_set_stiffness_uniform with 1e8 N/m four times. It stretches less than the
+    // fabric.
+    TAUT_STIFFNESS_STIFFEST = 0,
+    // The fabric's own.
+    TAUT_STIFFNESS_FABRIC = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum taut_stiffness taut_stiffness;
+#else
+typedef uint32_t taut_stiffness;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -370,6 +502,60 @@ typedef struct {
     // Springs of all families that are on.
     uint32_t springs;
 } taut_counts;
+
+// What is to be planned. Comes from taut_plan_def_default(), then change what you need.
+typedef struct {
+    // Bytes of this structure. Set by taut_plan_def_default().
+    uint32_t size;
+    // Shows that the definition came from taut_plan_def_default().
+    uint32_t cookie;
+    // How the sheet is held, a taut_hold. Default TAUT_HOLD_CORNERS.
+    uint32_t hold;
+    // Largest structural strain at rest, above 0, at most 1 (0.05 is 5 %). Default 0.05.
+    float tolerance;
+    // CPU time of a frame in ns, above 0. Default infinite.
+    float budget_ns;
+    // CPU time of a plain particle-step on this machine in ns, above 0, at most 1e6: the time of a taut_cloth_step of a cloth
+    // without features divided by its particles and substeps. Default 7.
+    float plain_ns;
+    // Frames per second, 1 to 10,000. Default 60.
+    float rate_hz;
+    // Size of gravity in m/s^2, above 0, at most 1e4. Default 9.81.
+    float gravity_m_s2;
+    // Mass per area in kg/m^2, 1e-6 to 1e6. Default 0.2.
+    float density_kg_m2;
+    // The fabric's warp, weft, shear and bend in N/m, each 0 to 1e9. Default 2000, 2000, 60, 1.
+    float stiffness_n_m[4];
+} taut_plan_def;
+
+// Settings that a scene requires, and what to expect of them. The fields of the names of taut_cloth_def and taut_grid_def
+// go there.
+typedef struct {
+    // The solver, a taut_solver.
+    uint32_t solver;
+    // Substeps of a frame.
+    uint32_t substeps;
+    // Iterations of an implicit solver.
+    uint32_t cg_iterations;
+    // Spring families for the grid.
+    uint32_t families;
+    // Features that the plan needs, to be or-ed with those that the scene needs.
+    uint32_t features;
+    // Where the stiffness comes from, a taut_stiffness.
+    uint32_t stiffness;
+    // Radius of the inertia field in m; 0 = none.
+    float inertia_radius_m;
+    // For all three of strain_limit.
+    float strain_limit;
+    // For all three of tether_slack.
+    float tether_slack;
+    // Largest structural strain to expect at rest, with a margin that all measured rows stay under.
+    float strain;
+    // CPU time to expect of a frame in ns.
+    float frame_ns;
+    // 1 where the strain is within the tolerance; 0 where these are the settings of the least strain that fit the time.
+    uint32_t meets;
+} taut_settings;
 
 // What a cloth is made of beside its grid. Comes from taut_cloth_def_default(), then change what you need. SI units; no
 // axis is "up".
@@ -476,6 +662,15 @@ typedef struct {
     float inertia_added;
     // Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     float hinge_fraction;
+    // Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
+    // from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown;
+    // only taut_cloth_predict_stretch knows it.
+    float stretch;
+    // What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
+    // unless stretch is known on the way there too. Infinite where nothing bounds it.
+    float stretch_bound;
+    // TAUT_BUDGET_ABOVE_RANGE and so on, or-ed.
+    uint32_t flags;
 } taut_budget_report;
 
 // Where something is in the world and how it is turned: a collider, the frame of a cloth.
@@ -634,6 +829,22 @@ TAUT_API taut_result taut_grid_counts(const taut_grid *from, taut_counts *out);
 // Threads: any.
 TAUT_API taut_result taut_grid_digest(const taut_grid *from, uint64_t *out);
 
+// The default plan: two far corners of a light woven, 5 % at rest, 60 frames per second, any time.
+//
+// Threads: any.
+TAUT_API taut_plan_def taut_plan_def_default(void);
+
+// The settings that a scene on a grid requires: the cheapest that meet the tolerance within the time, or, where none do, those
+// of the least strain that fit the time. They come from a table of measured rows; nothing is simulated.
+//
+// Errors: those of taut_grid_memory, TAUT_ERROR_NOT_FINITE, TAUT_ERROR_NEGATIVE, TAUT_ERROR_OUT_OF_RANGE,
+// TAUT_ERROR_STEP_SIZE (the rate), TAUT_ERROR_NO_PLAN: not even the cheapest fit the time.
+// Threads: any.
+TAUT_API
+taut_result taut_plan(const taut_grid_def *on,
+                      const taut_plan_def *def,
+                      taut_settings *out);
+
 // The default cloth for a grid: 60 Hz x 16 substeps, 0.2 kg/m^2, hanging from particle 0 in the direction -y. The grid
 // tells how many pins there can be; it may be NULL, which means a grid of 256 particles or more.
 //
@@ -729,7 +940,18 @@ taut_result taut_cloth_load_stiffness(taut_cloth *cloth,
                                       size_t size,
                                       taut_fabric *out_fabric);
 
-// What the budget makes of the stiffness with the pins as they are: told before the first step, and kept.
+// The report of taut_cloth_budget with the stretch to expect, and a sharper bound where that is known. The rest of a sheet that
+// hangs from an edge is searched for, which takes from milliseconds at 16 x 16 to seconds at 64 x 64: for a loading screen,
+// not for a frame.
+//
+// Errors: those of taut_cloth_budget.
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_predict_stretch(taut_cloth *cloth,
+                                       taut_budget_report *out);
+
+// What the budget makes of the stiffness with the pins as they are, and the bound of the stretch: told before the first
+// step, and kept. What stretch to expect: taut_cloth_predict_stretch.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_NO_STIFFNESS.
 // Threads: changes the cloth.
@@ -1070,6 +1292,28 @@ TAUT_API
 taut_result taut_cloth_step_all(taut_cloth *const *cloths,
                                 uint32_t count,
                                 uint32_t *out_flags);
+
+// Whether this machine has the vectors of a taut_width: 1, or 0.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_OUT_OF_RANGE (no taut_width).
+// Threads: any.
+TAUT_API taut_result taut_width_supported(uint32_t number, uint32_t *out);
+
+// Steps in other vectors (a taut_width) from now on, to time or test them: the bits stay the same. A cloth begins with the widest
+// ones of the machine. This is no part of the state: no snapshot holds it, and a reset keeps it.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (no taut_width),
+// TAUT_ERROR_UNSUPPORTED_WIDTH (this machine lacks it).
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_set_width(taut_cloth *cloth,
+                                 uint32_t number);
+
+// The vectors that the cloth is stepped in: a taut_width.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: reads the cloth.
+TAUT_API taut_result taut_cloth_width(const taut_cloth *cloth, uint32_t *out);
 
 // The positions without a copy.
 //

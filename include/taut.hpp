@@ -88,6 +88,13 @@ inline const char *result_message(taut_result result) noexcept { return taut_res
     return taut_field_info(data, size, &out);
 }
 
+inline taut_plan_def plan_def_default() noexcept { return taut_plan_def_default(); }
+
+[[nodiscard]] inline taut_result plan(const taut_grid_def &on, const taut_plan_def &def, taut_settings &out) noexcept
+{
+    return taut_plan(&on, &def, &out);
+}
+
 inline taut_grid_def grid_def_default() noexcept { return taut_grid_def_default(); }
 
 [[nodiscard]] inline taut_result grid_memory(const taut_grid_def &def, taut_memory &out) noexcept
@@ -99,6 +106,11 @@ inline taut_grid_def grid_def_default() noexcept { return taut_grid_def_default(
 inline taut_collider_def collider_def_default(uint32_t shape) noexcept { return taut_collider_def_default(shape); }
 
 inline taut_air air_default() noexcept { return taut_air_default(); }
+// Whether this machine has the vectors: 1, or 0.
+[[nodiscard]] inline taut_result width_supported(taut_width width, uint32_t &out) noexcept
+{
+    return taut_width_supported(width, &out);
+}
 
 class Grid {
 public:
@@ -210,6 +222,11 @@ public:
     }
 
     [[nodiscard]] taut_result budget(taut_budget_report &out) noexcept { return taut_cloth_budget(handle_, &out); }
+
+    [[nodiscard]] taut_result predict_stretch(taut_budget_report &out) noexcept
+    {
+        return taut_cloth_predict_stretch(handle_, &out);
+    }
 
     // Matter: which particles exist, and what they weigh.
 
@@ -367,6 +384,9 @@ public:
 
     [[nodiscard]] taut_result wake() noexcept { return taut_cloth_wake(handle_); }
 
+    // The vectors that it is stepped in: to time and test them, with the same bits.
+    [[nodiscard]] taut_result set_width(taut_width width) noexcept { return taut_cloth_set_width(handle_, width); }
+    [[nodiscard]] taut_result width(uint32_t &out) const noexcept { return taut_cloth_width(handle_, &out); }
     [[nodiscard]] taut_result is_asleep(uint32_t &out) const noexcept { return taut_cloth_is_asleep(handle_, &out); }
 
     [[nodiscard]] taut_result step_index(uint64_t &out) const noexcept { return taut_cloth_step_index(handle_, &out); }

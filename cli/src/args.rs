@@ -16,6 +16,7 @@ const EXAMPLES: &str = "Examples:
   taut drape \"light silk\" --scene edge --json       the report alone on stdout
   taut correct \"heavy blue denim\" --out denim.tautfield
                                                     a stiffness field for taut_cloth_load_stiffness
+  taut plan denim --scene edge --tolerance 2        the cheapest settings that stretch by 2 % at most
   taut info                                         the generator that is built in";
 
 /// Cloth for games that does not stretch like rubber: the fabric in words, the stiffness from a generator.
@@ -34,6 +35,8 @@ pub enum Command {
     Drape(Drape),
     /// Writes the stiffness field of a fabric to a small file that the C library loads.
     Correct(Correct),
+    /// Tells the cheapest settings that a scene requires, and why.
+    Plan(Plan),
     /// Tells what a generator file is.
     Info(Info),
     /// Measures cost and error; `taut measure --help` lists what.
@@ -105,6 +108,37 @@ pub struct Correct {
     pub json: bool,
 }
 
+/// `taut plan`.
+#[derive(Args, Debug)]
+pub struct Plan {
+    /// The fabric in words, for example "denim".
+    pub description: String,
+    /// How the sheet is held: hang2, edge, hang1, swing, curtain, drape, flag or cusick.
+    #[arg(long, default_value = "hang2")]
+    pub scene: Scene,
+    /// Particles, each side 2 to 4096.
+    #[arg(long, value_name = "ROWSxCOLUMNS", default_value = "32x32", value_parser = numbers::grid, allow_hyphen_values = true)]
+    pub grid: GridSize,
+    /// Side lengths of the sheet in m.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1x1", value_parser = numbers::sides, allow_hyphen_values = true)]
+    pub size: Sides,
+    /// Frames per second, 1 to 10000.
+    #[arg(long, value_name = "HZ", default_value = "60", value_parser = numbers::rate, allow_hyphen_values = true)]
+    pub rate: f32,
+    /// Largest stretch at rest in percent, above 0, at most 100.
+    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = numbers::percent, allow_hyphen_values = true)]
+    pub tolerance: f32,
+    /// CPU time of a frame [default: any].
+    #[arg(long, value_name = "MICROSECONDS", value_parser = numbers::positive, allow_hyphen_values = true)]
+    pub budget_us: Option<f32>,
+    /// CPU time of a plain particle-step on your machine in ns.
+    #[arg(long, value_name = "NS", default_value = "7", value_parser = numbers::positive, allow_hyphen_values = true)]
+    pub plain_ns: f32,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// `taut info`.
 #[derive(Args, Debug)]
 pub struct Info {
@@ -121,7 +155,7 @@ pub fn answer(e: &clap::Error) -> Result<(), Failure> {
     match e.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => failure::print(&e.render().to_string()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
-            Err(Failure::new("no command: give drape, correct, info or measure (taut --help tells more)"))
+            Err(Failure::new("no command: give drape, correct, plan, info or measure (taut --help tells more)"))
         }
         _ => Err(Failure::new(short(&e.render().to_string()))),
     }
@@ -210,6 +244,8 @@ mod tests {
             ("taut drape silk --scene moon", "flag or cusick"),
             ("taut drape silk --budget big", "tuned or certified"),
             ("taut correct silk", "--out"),
+            ("taut plan silk --tolerance 0", "--tolerance"),
+            ("taut plan silk --budget-us -3", "--budget-us"),
         ] {
             let text = parse(line).err().unwrap_or_else(|| panic!("{line} parsed"));
             assert!(text.contains(named), "{line}: {text}");

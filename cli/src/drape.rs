@@ -6,10 +6,11 @@ use taut_lab::fabric::Fabric;
 use taut_onnx::Correction;
 
 use crate::failure::{self, Failure, complain};
+use crate::measure::fabric_of;
 use crate::notes;
 use crate::output::Folder;
 use crate::progress::Progress;
-use crate::report::{self, Report};
+use crate::report::Report;
 use crate::{args, model, numbers, picture};
 
 /// Files of a comparison, in the order in which they are written.
@@ -19,7 +20,7 @@ const FILES: [&str; 2] = ["drape.png", "report.json"];
 pub fn run(args: &args::Drape) -> Result<(), Failure> {
     let (generator, correction) = model::correct(&args.cloth)?;
     let case = case(args, &correction)?;
-    let reference = reference(&correction);
+    let reference = fabric_of(&correction);
     let folder = Folder::open(&args.out, &FILES)?;
     let outcomes = simulate(&case, &reference, &correction)?;
 
@@ -75,18 +76,6 @@ fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
         seconds: args.seconds,
         hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
         seed: cloth.seed,
-    })
-}
-
-/// The fabric that the description names; where it names none, the generator's own idea of it, without its variation
-/// over the cloth.
-fn reference(c: &Correction) -> Fabric {
-    Fabric::named(&c.description).unwrap_or_else(|| Fabric {
-        kind: report::NO_KIND,
-        stiffness: report::medians(c),
-        density_kg_m2: c.density_kg_m2,
-        hinge_rigidity_n_m: c.hinge_rigidity_n_m,
-        measured: false,
     })
 }
 

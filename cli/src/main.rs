@@ -1,7 +1,8 @@
 //! The program `taut`: fabric in words, corrected cloth out.
 //!
 //! `taut drape` simulates one scene with seven ways to choose the stiffness and shows them side by side,
-//! `taut correct` writes a stiffness field for a game to load, `taut info` tells what a generator file is.
+//! `taut correct` writes a stiffness field for a game to load, `taut plan` tells which settings a scene requires, `taut measure`
+//! measures what settings cost and how wrong they are, `taut info` tells what a generator file is.
 //!
 //! Everything that a user can get wrong ends with one line on stderr, `taut: ...`, and exit code 2.
 #![forbid(unsafe_code)]
@@ -18,6 +19,7 @@ mod notes;
 mod numbers;
 mod output;
 mod picture;
+mod plan;
 mod progress;
 mod report;
 mod table;
@@ -37,6 +39,7 @@ fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Drape(args) => drape::run(args),
         Command::Correct(args) => correct::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Info(args) => info::run(args),
         Command::Measure(what) => measure::run(what),
     }

@@ -65,6 +65,16 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     within(text, f32::MIN_POSITIVE..=3600.0, "").map_err(|_| "must be above 0, at most 3600 s".into())
 }
 
+/// A share in percent: above 0, at most 100.
+pub fn percent(text: &str) -> Result<f32, String> {
+    within(text, f32::MIN_POSITIVE..=100.0, "").map_err(|_| "must be above 0, at most 100 %".into())
+}
+
+/// A number above 0, at most a million.
+pub fn positive(text: &str) -> Result<f32, String> {
+    within(text, f32::MIN_POSITIVE..=1e6, "").map_err(|_| "must be above 0, at most 1000000".into())
+}
+
 /// Mass per area in kg/m^2: from a soap film to a lead apron.
 pub fn density(text: &str) -> Result<f32, String> {
     within(text, 0.0001..=1000.0, " kg/m^2")

@@ -9,6 +9,9 @@ use crate::failure::{Failure, one_line};
 use crate::notes::{self, number};
 use crate::report::{Report, Setting};
 
+/// Height of the viewer over what lies on something, in degrees.
+const FROM_ABOVE: f32 = 35.0;
+
 impl From<PictureError> for Failure {
     fn from(e: PictureError) -> Failure {
         Failure::new(e)
@@ -19,13 +22,23 @@ impl From<PictureError> for Failure {
 pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8>, Failure> {
     let [rows, columns] = report.grid.map(|n| n as usize);
     let [width_m, height_m] = report.size_m;
+    let pins = scene.pins(rows, columns);
+    // where a whole part is held, a mark at each of its particles would hide it
+    let pins = if pins.len() > 2 * (rows + columns) { &[][..] } else { &pins };
+    let present: Vec<bool> = (0..rows * columns).map(|i| scene.has(i, rows, columns)).collect();
     let mut sheet = Sheet::new(one_line(&report.description))
         .subtitle(notes::setup(report))
         .style(colour::style(&report.description))
         .footer(notes::notes(report).join(" "));
+    if scene.solid(width_m, height_m).is_some() {
+        // what lies on something is seen from above
+        sheet = sheet.seen_from(FROM_ABOVE);
+    }
     for (i, (outcome, setting)) in outcomes.iter().zip(&report.settings).enumerate() {
-        let grid =
-            Grid::new(&outcome.positions, rows, columns, width_m, height_m)?.with_pins(&scene.pins(rows, columns))?;
+        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?
+            .with_pins(pins)?
+            .with_mask(&present)?
+            .with_solid(scene.solid(width_m, height_m));
         let mut panel = Panel::new(notes::heading(setting.name), grid);
         for line in lines(setting, report.grid) {
             panel = panel.line(line);

@@ -130,7 +130,7 @@ impl<'a> Cloth<'a> {
                 count: 0,
                 capacity: layout.max_pins,
             },
-            tethers: Tethers::new(&layout, b)?,
+            tethers: Tethers::new(if layout.has_tethers() { p } else { 0 }, b)?,
             before: Before::new(&layout, b)?,
             levels: Levels::new(&layout, b)?,
             colliders: Colliders::new(&layout, b)?,
@@ -263,7 +263,8 @@ impl<'a> Cloth<'a> {
         self.wake();
     }
 
-    /// What the budget makes of the stiffness with the pins as they are.
+    /// What the budget makes of the stiffness with the pins as they are, and the bound of the stretch: O(particles + pins^2).
+    /// [`Cloth::predict_stretch`] tells the stretch to expect.
     ///
     /// Error: [`Error::NoStiffness`].
     pub fn budget(&mut self) -> Result<BudgetReport, Error> {
@@ -271,7 +272,8 @@ impl<'a> Cloth<'a> {
             return Err(Error::NoStiffness);
         }
         self.refresh(true);
-        Ok(self.report)
+        let report = self.report;
+        Ok(in_default_environment(|| self.predict(report, false)))
     }
 
     /// Computes inertia and springs anew where pins or stiffness have changed. The inertia field follows the pins; a

@@ -4,8 +4,8 @@ use crate::{Error, Hash64};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// 0.35 of the limit of the flat sheet, so at most 0.7 of it in any other shape: it never grows exponentially, from any
-    /// start, and with damping of 1/s it comes to rest without any limit on speed or compression. 0.44 of the stiffness of
+    /// 0.25 of the limit of the flat sheet, so at most half of it in any other shape: it never grows exponentially, from any
+    /// start, and with damping of 1/s it comes to rest without any limit on speed or compression. 0.31 of the stiffness of
     /// `Tuned`.
     Certified = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping; the default.

@@ -61,11 +61,13 @@ pub enum Error {
     NoSuchCollider = -26,
     /// There are [`crate::MAX_COLLIDERS`] colliders already.
     TooManyColliders = -27,
+    /// Not even the cheapest settings fit the time.
+    NoPlan = -28,
 }
 
 impl Error {
     /// Every error, in the order of the codes.
-    pub const ALL: [Error; 27] = [
+    pub const ALL: [Error; 28] = [
         Error::NullPointer,
         Error::Misaligned,
         Error::BlockTooSmall,
@@ -93,6 +95,7 @@ impl Error {
         Error::Absent,
         Error::NoSuchCollider,
         Error::TooManyColliders,
+        Error::NoPlan,
     ];
 
     /// The C result code: negative.
@@ -130,6 +133,7 @@ impl Error {
             Error::Absent => "the particle is absent: the mask says so",
             Error::NoSuchCollider => "there is no collider of this id",
             Error::TooManyColliders => "there are 32 colliders already",
+            Error::NoPlan => "not even the cheapest settings fit the time",
         }
     }
 }

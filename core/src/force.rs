@@ -15,7 +15,7 @@
 #![allow(unsafe_code)] // pointers into planes whose lengths are checked once a sweep: see `Sweep::run`
 
 use crate::layout::{CARRY_ROWS, Layout, span};
-use crate::simd::{Pass, Vector};
+use crate::simd::{Pass, Three, Vector, load};
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
 pub(crate) const TINY: f32 = 1e-30;
@@ -223,81 +223,6 @@ struct Constants<V> {
     limited: bool,
     speed: V,
     speed2: V,
-}
-
-/// Three coordinates. Plain functions instead of closures and `map`: only what is always inlined is compiled with the
-/// instructions of the width.
-#[derive(Clone, Copy)]
-struct Three<V>([V; 3]);
-
-impl<V: Vector> Three<V> {
-    /// # Safety
-    /// Each plane has the lanes from `at` on.
-    #[inline(always)]
-    unsafe fn load(zero: V, from: &[*mut f32; 3], at: usize) -> Three<V> {
-        let [x, y, z] = *from;
-        // SAFETY: the caller's promise.
-        unsafe { Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]) }
-    }
-
-    /// # Safety
-    /// Each plane has the lanes from `at` on.
-    #[inline(always)]
-    unsafe fn store(self, to: &[*mut f32; 3], at: usize) {
-        let (Three([x, y, z]), to) = (self, *to);
-        // SAFETY: the caller's promise.
-        unsafe {
-            x.store(to[0].wrapping_add(at));
-            y.store(to[1].wrapping_add(at));
-            z.store(to[2].wrapping_add(at));
-        }
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Three<V>) -> Three<V> {
-        let (a, b) = (self.0, other.0);
-        Three([a[0] + b[0], a[1] + b[1], a[2] + b[2]])
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Three<V>) -> Three<V> {
-        let (a, b) = (self.0, other.0);
-        Three([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
-    }
-
-    #[inline(always)]
-    fn times(self, factor: V) -> Three<V> {
-        let a = self.0;
-        Three([a[0] * factor, a[1] * factor, a[2] * factor])
-    }
-
-    #[inline(always)]
-    fn squared(self) -> V {
-        let [x, y, z] = self.0;
-        x * x + y * y + z * z
-    }
-
-    /// [`Vector::next1`] of each.
-    #[inline(always)]
-    fn next1(self, before: Three<V>) -> Three<V> {
-        let (a, b) = (self.0, before.0);
-        Three([a[0].next1(b[0]), a[1].next1(b[1]), a[2].next1(b[2])])
-    }
-
-    /// [`Vector::next2`] of each.
-    #[inline(always)]
-    fn next2(self, before: Three<V>, before2: Three<V>) -> Three<V> {
-        let (a, b, c) = (self.0, before.0, before2.0);
-        Three([a[0].next2(b[0], c[0]), a[1].next2(b[1], c[1]), a[2].next2(b[2], c[2])])
-    }
-}
-
-/// # Safety
-/// There are the lanes from `at` on.
-#[inline(always)]
-unsafe fn load<V: Vector>(zero: V, from: *const f32, at: usize) -> V {
-    // SAFETY: the caller's promise.
-    unsafe { zero.load(from.wrapping_add(at)) }
 }
 
 /// A spring of each lane on its way: the difference of its ends and L0/l.

@@ -49,11 +49,14 @@ impl Hash64 {
     #[inline(always)]
     fn each<T>(&mut self, items: &[T], bits: impl Fn(&T) -> u32) {
         let (blocks, rest) = items.as_chunks::<8>();
+        // in registers: eight multiplications that do not wait for each other
+        let mut lanes = self.lanes;
         for block in blocks {
-            for (lane, item) in self.lanes.iter_mut().zip(block) {
+            for (lane, item) in lanes.iter_mut().zip(block) {
                 *lane = (*lane ^ u64::from(bits(item))).wrapping_mul(PRIME);
             }
         }
+        self.lanes = lanes;
         for (lane, item) in self.lanes.iter_mut().zip(rest) {
             *lane = (*lane ^ u64::from(bits(item))).wrapping_mul(PRIME);
         }

@@ -109,7 +109,7 @@ impl Layout {
             + when(self.mask, 1);
         planes * self.plane
             + round16(PIN_NUMBERS * self.max_pins)
-            + Tethers::numbers(self)
+            + Tethers::numbers(if self.has_tethers() { self.plane } else { 0 })
             + Before::numbers(self)
             + Levels::numbers(self)
             + Colliders::numbers(self)

@@ -7,26 +7,33 @@
 //! the chord between two particles, so that folds are free.
 
 use crate::force::Substep;
-use crate::layout::{Layout, read, take, write};
-use crate::limit::Sheet;
-use crate::math::lerp;
+use crate::layout::{Layout, copy, read, span, take, write};
+use crate::limit::{Reach, Sheet, Sweeps};
+use crate::math::round16;
+use crate::prolong::Prolong;
+use crate::simd::{Pass, Vector};
 use crate::strain_limit::TARGET;
-use crate::{Cloth, Error};
+use crate::tethers::{Pull, Tethers};
+use crate::{Cloth, Error, simd};
 
 /// Sweeps of a coarse level.
 const COARSE_SWEEPS: u32 = 4;
 
-/// Most cycles of a substep. More than one is needed only where pins move by several cells in a substep.
+/// Most cycles of a substep. More than a few are needed only where pins move by several cells in a substep.
 const MOST_CYCLES: u32 = 32;
-/// Cycles that aim at the usual share of the limit.
-const GENTLE_CYCLES: u32 = 3;
+/// Cycles that aim at the usual share of the limit; those after them aim at half of it.
+const GENTLE_CYCLES: u32 = 1;
 
-/// Planes of a coarse level: positions and inverse masses. All coarse levels together have at most as many nodes as the
-/// cloth has particles, since each halves at least one side.
-const PLANES: usize = 4;
+/// Rounds, sweeps of each and rows around for what a cycle leaves.
+const LOCAL_ROUNDS: u32 = 2;
+const LOCAL_SWEEPS: u32 = 4;
+const MARGIN: usize = 6;
+
+/// Most levels, the finest included.
+const MOST_LEVELS: usize = 13;
 
 /// Every `span`-th particle along u and v, and the last one of each row and column.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Level {
     /// Particles of the cloth along u and v, less one.
     last: [usize; 2],
@@ -55,28 +62,41 @@ impl Level {
         Level { last, span, size: [nodes(0), nodes(1)] }
     }
 
-    /// Number of levels, the finest included.
-    pub fn count(l: &Layout) -> u32 {
-        let mut k = 0;
-        while k < 12 && Level::new(l, k + 1) != Level::new(l, k) {
-            k += 1;
+    /// All levels and how many they are, the finest first.
+    fn all(l: &Layout) -> ([Level; MOST_LEVELS], usize) {
+        let mut levels = [Level::default(); MOST_LEVELS];
+        let (mut count, mut former) = (0, Level::default());
+        for (k, level) in levels.iter_mut().enumerate() {
+            *level = Level::new(l, k as u32);
+            // a chord across a hole says nothing about the cloth around it
+            if *level == former || l.mask && k > 0 {
+                break;
+            }
+            (count, former) = (count + 1, *level);
         }
-        k + 1
+        (levels, count)
     }
 
-    pub fn nodes(&self) -> usize {
-        let [u, v] = self.size;
-        u * v
+    /// Numbers of a row of nodes in memory: whole vectors.
+    pub fn stride(&self) -> usize {
+        let [u, _] = self.size;
+        round16(u)
+    }
+
+    /// Numbers of a plane of nodes, with the places beyond the last row that vectors touch.
+    fn plane(&self) -> usize {
+        let [_, v] = self.size;
+        self.stride() * v + 32
     }
 
     /// Particle of a node along u (`d` 0) or v (1).
-    fn particle(&self, d: usize, node: usize) -> usize {
+    pub fn particle(&self, d: usize, node: usize) -> usize {
         let (s, n) = (self.span.get(d).copied().unwrap_or(1), self.last.get(d).copied().unwrap_or(0));
         (node * s).min(n)
     }
 
     /// The node before a particle and the share of the next one.
-    fn before(&self, d: usize, particle: usize) -> (usize, f32) {
+    pub fn before(&self, d: usize, particle: usize) -> (usize, f32) {
         let (s, size) = (self.span.get(d).copied().unwrap_or(1).max(1), self.size.get(d).copied().unwrap_or(2));
         let node = (particle / s).min(size.saturating_sub(2));
         let (a, b) = (self.particle(d, node), self.particle(d, node + 1));
@@ -99,7 +119,9 @@ pub(crate) struct Levels<'a> {
 impl<'a> Levels<'a> {
     /// f32 numbers that they need.
     pub fn numbers(l: &Layout) -> usize {
-        if l.levels { PLANES * l.plane } else { 0 }
+        let (levels, count) = Level::all(l);
+        let coarse = levels.iter().take(count).skip(1);
+        if l.levels { coarse.map(|level| Nodes::numbers(level.plane())).sum() } else { 0 }
     }
 
     pub fn new(l: &Layout, block: &mut &'a mut [f32]) -> Result<Self, Error> {
@@ -107,159 +129,249 @@ impl<'a> Levels<'a> {
     }
 }
 
-/// The planes of a coarse level: positions, and once it is settled the ways from where its particles are to there.
+/// The planes of a coarse level.
 struct Nodes<'n> {
+    /// Where the particles of the nodes are.
+    from: [&'n mut [f32]; 3],
+    /// Positions, and once the level is settled the ways from `from` to there.
     x: [&'n mut [f32]; 3],
     inverse: &'n mut [f32],
+    tethers: Tethers<'n>,
 }
 
 impl<'n> Nodes<'n> {
-    /// Takes the planes of a level off the memory of the levels.
-    fn take(rest: &mut &'n mut [f32], nodes: usize) -> Result<Self, Error> {
-        Ok(Nodes { x: [take(rest, nodes)?, take(rest, nodes)?, take(rest, nodes)?], inverse: take(rest, nodes)? })
+    fn numbers(plane: usize) -> usize {
+        7 * plane + Tethers::numbers(plane)
     }
 
-    /// The way at a particle, bilinearly between the nodes around it.
-    fn way(&self, level: &Level, row: usize, column: usize) -> [f32; 3] {
-        let [columns, _] = level.size;
-        let ((u, share_u), (v, share_v)) = (level.before(0, column), level.before(1, row));
-        let node = v * columns + u;
-        self.x.each_ref().map(|plane| {
-            let top = lerp(read(plane, node), read(plane, node + 1), share_u);
-            let bottom = lerp(read(plane, node + columns), read(plane, node + columns + 1), share_u);
-            lerp(top, bottom, share_v)
+    /// Takes the planes of a level off the memory of the levels.
+    fn take(rest: &mut &'n mut [f32], plane: usize) -> Result<Self, Error> {
+        Ok(Nodes {
+            from: [take(rest, plane)?, take(rest, plane)?, take(rest, plane)?],
+            x: [take(rest, plane)?, take(rest, plane)?, take(rest, plane)?],
+            inverse: take(rest, plane)?,
+            tethers: Tethers::new(plane, rest)?,
         })
+    }
+
+    /// The nodes of all coarse levels; the first place, that of the cloth itself, stays empty.
+    fn all(numbers: &'n mut [f32], levels: &[Level]) -> [Option<Nodes<'n>>; MOST_LEVELS] {
+        let (mut nodes, mut rest) = ([const { None }; MOST_LEVELS], numbers);
+        for (nodes, level) in nodes.iter_mut().zip(levels).skip(1) {
+            *nodes = Nodes::take(&mut rest, level.plane()).ok();
+        }
+        nodes
+    }
+}
+
+/// Copies of a plane what a coarser level has of it: every number of every row or every second one, and the last.
+fn thin(from: &[f32], first: usize, stride: usize, fine: &Level, to: &mut [f32], coarse: &Level) {
+    let ([columns, rows], [nodes, node_rows]) = (fine.size, coarse.size);
+    let step = if columns == nodes { 1 } else { 2 };
+    for (row, to) in to.chunks_exact_mut(coarse.stride().max(1)).enumerate().take(node_rows) {
+        let row = if rows == node_rows { row } else { (2 * row).min(rows.saturating_sub(1)) };
+        let from = span(from, first + row * stride, columns);
+        for (to, from) in to.iter_mut().zip(from.iter().step_by(step)) {
+            *to = *from;
+        }
+        if let Some(last) = from.last() {
+            write(to, nodes.saturating_sub(1), *last);
+        }
+    }
+}
+
+/// Takes the numbers of some planes off those of others.
+struct TakeOff<'t> {
+    from: [&'t mut [f32]; 3],
+    other: [&'t [f32]; 3],
+}
+
+impl Pass for TakeOff<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) {
+        for (from, other) in self.from.into_iter().zip(self.other) {
+            let mut at = 0;
+            while at < from.len() {
+                (zero.read(from, at) - zero.read(other, at)).write(from, at);
+                at += V::LANES;
+            }
+        }
     }
 }
 
 impl Cloth<'_> {
-    /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
-    pub(crate) fn apply_levels(&mut self, c: &Substep) {
-        // only where a cycle would move nothing it is left out: a threshold above that would kick
-        if self.within_limits(c, TARGET) && self.diagonals_within(c) && self.tethers_are_slack() {
+    /// Gives the nodes of the coarse levels the masses and tethers of their particles; called when the pins have changed.
+    pub(crate) fn attach_nodes(&mut self) {
+        let l = self.layout;
+        if !l.levels {
             return;
         }
-        self.begin_limits();
-        for i in 0..MOST_CYCLES {
-            // what the first cycles cannot settle is aimed at from farther below
-            let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
-            self.cycle(c, target);
-            if self.within_limits(c, 1.0) {
-                break;
-            }
-        }
-        self.finish_limits(c);
-    }
-
-    /// All levels once, the coarsest first.
-    fn cycle(&mut self, c: &Substep, target: f32) {
-        // a chord across a hole says nothing about the cloth around it
-        let count = if self.layout.mask { 1 } else { Level::count(&self.layout) };
-        let numbers = core::mem::take(&mut self.levels.numbers);
-        for k in (1..count).rev() {
-            let (level, coarser) = (Level::new(&self.layout, k), Level::new(&self.layout, k + 1));
-            let finer: usize = (1..k).map(|k| PLANES * Level::new(&self.layout, k).nodes()).sum();
-            let mut rest = numbers.get_mut(finer..).unwrap_or(&mut []);
-            let Ok(mut nodes) = Nodes::take(&mut rest, level.nodes()) else {
-                break;
+        let (levels, count) = Level::all(&l);
+        let levels = levels.get(..count).unwrap_or(&[]);
+        for (nodes, level) in Nodes::all(self.levels.numbers, levels).into_iter().zip(levels) {
+            let Some(mut nodes) = nodes else {
+                continue;
             };
-            let above = if k + 1 < count { Nodes::take(&mut rest, coarser.nodes()).ok() } else { None };
-            self.gather_nodes(&level, &mut nodes, above.as_ref().map(|n| (n, &coarser)));
-            self.tether_nodes(&level, &mut nodes);
             let [columns, rows] = level.size;
-            let mut sheet = Sheet {
-                rows,
-                columns,
-                stride: columns,
-                first: 0,
-                x: nodes.x.each_mut().map(|p| &mut **p),
-                inverse: nodes.inverse,
-                mask: &[],
-                reach: self.reach(c, target, level.span, level.last_span()),
-            };
-            sheet.sweep(COARSE_SWEEPS);
-            self.leave_the_ways(&level, &mut nodes);
-            if k == 1 {
-                self.hand_down(&level, &nodes);
+            for length in &mut nodes.tethers.length {
+                length.fill(f32::INFINITY);
             }
-        }
-        self.levels.numbers = numbers;
-        self.tether_particles();
-        self.sweep_finest(c, target, self.def.strain_passes);
-    }
-
-    /// Fills the nodes of a level: where their particles are, moved by what the coarser level found.
-    fn gather_nodes(&self, level: &Level, nodes: &mut Nodes<'_>, above: Option<(&Nodes<'_>, &Level)>) {
-        let [columns, rows] = level.size;
-        for node_row in 0..rows {
-            let row = level.particle(1, node_row);
-            for node_column in 0..columns {
-                let column = level.particle(0, node_column);
-                let (at, node) = (self.layout.at(row, column), node_row * columns + node_column);
-                let inverse = read(self.inverse, at);
-                let [x, y, z] = self.local(at);
-                let mut moved = [x, y, z];
-                if let Some((above, coarser)) = above
-                    && inverse > 0.0
-                {
-                    let d = above.way(coarser, row, column);
-                    moved = [x + d[0], y + d[1], z + d[2]];
-                }
-                for (x, m) in nodes.x.iter_mut().zip(moved) {
-                    write(x, node, m);
-                }
-                write(nodes.inverse, node, inverse);
-            }
-        }
-    }
-
-    fn tether_nodes(&self, level: &Level, nodes: &mut Nodes<'_>) {
-        if self.pins.count == 0 {
-            return;
-        }
-        let [columns, rows] = level.size;
-        for node_row in 0..rows {
-            let row = level.particle(1, node_row);
-            for node_column in 0..columns {
-                let (at, node) =
-                    (self.layout.at(row, level.particle(0, node_column)), node_row * columns + node_column);
-                if read(nodes.inverse, node) > 0.0 {
-                    let [x, y, z] = &nodes.x;
-                    let moved = self.tethered(at, [read(x, node), read(y, node), read(z, node)]);
-                    for (x, m) in nodes.x.iter_mut().zip(moved) {
-                        write(x, node, m);
+            for row in 0..rows {
+                for column in 0..columns {
+                    let at = l.at(level.particle(1, row), level.particle(0, column));
+                    let node = row * level.stride() + column;
+                    write(nodes.inverse, node, read(self.inverse, at));
+                    let pins = nodes.tethers.pin.iter_mut().zip(&self.tethers.pin);
+                    let lengths = nodes.tethers.length.iter_mut().zip(&self.tethers.length);
+                    for (to, from) in pins.chain(lengths) {
+                        write(to, node, read(from, at));
                     }
                 }
             }
+            nodes.tethers.find_common();
         }
     }
 
-    /// Takes off the nodes where their particles are.
-    fn leave_the_ways(&self, level: &Level, nodes: &mut Nodes<'_>) {
+    /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
+    pub(crate) fn apply_levels(&mut self, c: &Substep) {
+        // only where a cycle would move nothing it is left out: a threshold above that would kick
+        if self.is_within(c, TARGET) && self.tethers_are_slack() {
+            return;
+        }
+        self.begin_limits();
+        let (levels, count) = Level::all(&self.layout);
+        let levels = levels.get(..count).unwrap_or(&[]);
+        let numbers = core::mem::take(&mut self.levels.numbers);
+        let mut nodes = Nodes::all(numbers, levels);
+        for i in 0..MOST_CYCLES {
+            // what the first cycles cannot settle is aimed at from farther below
+            let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
+            self.cycle(c, target, levels, &mut nodes);
+            if self.sweep_what_is_left(c, target) {
+                break;
+            }
+        }
+        self.levels.numbers = numbers;
+        self.finish_limits(c);
+    }
+
+    /// Sweeps over the rows around those with a structural link beyond its limit, since what a cycle leaves is near the
+    /// pins. Whether none is left.
+    fn sweep_what_is_left(&mut self, c: &Substep, target: f32) -> bool {
+        let (_, end) = self.rows();
+        let mut long = self.long_rows(c, self.rows());
+        for _ in 0..LOCAL_ROUNDS {
+            let Some((first, last)) = long else {
+                break;
+            };
+            // an even row, so that the pairs are those of the whole cloth
+            let first = first.saturating_sub(MARGIN) & !1;
+            let last = (last + 1 + MARGIN).min(end);
+            self.sweep_rows(c, target, (first, last), LOCAL_SWEEPS);
+            // those below the last row may have been moved away from
+            long = self.long_rows(c, (first.saturating_sub(1), (last + 1).min(end)));
+        }
+        long.is_none()
+    }
+
+    /// All levels once, the coarsest first.
+    fn cycle(&mut self, c: &Substep, target: f32, levels: &[Level], nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS]) {
+        self.gather_nodes(levels, nodes);
+        for k in (1..levels.len()).rev() {
+            let Some((nodes, coarser)) = nodes.split_at_mut_checked(k + 1) else {
+                continue;
+            };
+            let (Some(level), Some(Some(nodes))) = (levels.get(k), nodes.last_mut()) else {
+                continue;
+            };
+            for (x, from) in nodes.x.iter_mut().zip(&nodes.from) {
+                copy(x, from);
+            }
+            if let (Some(coarse), Some(Some(above))) = (levels.get(k + 1), coarser.first()) {
+                let prolong = Prolong {
+                    fine: *level,
+                    coarse: *coarse,
+                    ways: above.x.each_ref().map(|p| &**p),
+                    x: nodes.x.each_mut().map(|p| &mut **p),
+                    first: 0,
+                    stride: level.stride(),
+                    inverse: nodes.inverse,
+                    scratch: self.carry,
+                };
+                simd::run(self.width, prolong);
+            }
+            let reach = self.reach(c, target, level.span, level.last_span());
+            self.settle_nodes(level, nodes, reach);
+        }
+        if let (Some(fine), Some(coarse), Some(Some(nodes))) = (levels.first(), levels.get(1), nodes.get(1)) {
+            let prolong = Prolong {
+                fine: *fine,
+                coarse: *coarse,
+                ways: nodes.x.each_ref().map(|p| &**p),
+                x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
+                first: self.layout.row(0),
+                stride: self.layout.stride,
+                inverse: self.inverse,
+                scratch: self.carry,
+            };
+            simd::run(self.width, prolong);
+        }
+        self.tether_particles();
+        self.sweep_finest(c, target);
+    }
+
+    /// Fills the nodes of all levels with where their particles are, each level from the one below.
+    fn gather_nodes(&self, levels: &[Level], nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS]) {
+        for k in 1..levels.len() {
+            let Some((finer, nodes)) = nodes.split_at_mut_checked(k) else {
+                continue;
+            };
+            let (Some(fine), Some(level), Some(Some(nodes))) = (levels.get(k - 1), levels.get(k), nodes.first_mut())
+            else {
+                continue;
+            };
+            let (x, first, stride) = match finer.last() {
+                Some(Some(finer)) => (finer.from.each_ref().map(|p| &**p), 0, fine.stride()),
+                _ => ([&*self.x.x, &*self.x.y, &*self.x.z], self.layout.row(0), self.layout.stride),
+            };
+            for (to, from) in nodes.from.iter_mut().zip(x) {
+                thin(from, first, stride, fine, to, level);
+            }
+        }
+    }
+
+    /// Tethers and sweeps of a coarse level; then its positions are made to ways.
+    fn settle_nodes(&self, level: &Level, nodes: &mut Nodes<'_>, reach: Reach) {
         let [columns, rows] = level.size;
-        for v in 0..rows {
-            for u in 0..columns {
-                let here = self.local(self.layout.at(level.particle(1, v), level.particle(0, u)));
-                for (plane, here) in nodes.x.iter_mut().zip(here) {
-                    let node = v * columns + u;
-                    let way = read(plane, node) - here;
-                    write(plane, node, way);
-                }
-            }
+        let stride = level.stride();
+        if self.pins.count > 0 {
+            let pull = Pull {
+                rows,
+                columns,
+                stride,
+                first: 0,
+                x: nodes.x.each_mut().map(|p| &mut **p),
+                anchors: Some([&*self.x.x, &*self.x.y, &*self.x.z]),
+                tethers: &nodes.tethers,
+                velocity: None,
+                look: false,
+            };
+            simd::run(self.width, pull);
         }
-    }
-
-    /// Moves all particles by the ways of the first coarse level.
-    fn hand_down(&mut self, level: &Level, nodes: &Nodes<'_>) {
-        let l = self.layout;
-        for row in 0..l.rows {
-            for column in 0..l.columns {
-                let at = l.at(row, column);
-                if read(self.inverse, at) > 0.0 {
-                    let ([x, y, z], [dx, dy, dz]) = (self.local(at), nodes.way(level, row, column));
-                    self.set_position_at(at, [x + dx, y + dy, z + dz]);
-                }
-            }
-        }
+        let sheet = Sheet {
+            rows,
+            columns,
+            stride,
+            first: 0,
+            x: nodes.x.each_mut().map(|p| &mut **p),
+            inverse: nodes.inverse,
+            mask: &[],
+            reach,
+        };
+        simd::run(self.width, Sweeps { sheet, sweeps: COARSE_SWEEPS });
+        let from = nodes.x.each_mut().map(|p| &mut **p);
+        simd::run(self.width, TakeOff { from, other: nodes.from.each_ref().map(|p| &**p) });
     }
 }

@@ -1,19 +1,25 @@
 //! One-sided distance limits between neighbours (Provot 1995): a link longer than its limit is drawn back to it, its ends
 //! moving in proportion to their inverse masses; a shorter one is left alone.
 //!
-//! The order is fixed and red-black, so that the links of one pass share no particle and nothing depends on how the work
-//! is split: along u the even columns then the odd ones, along v the even rows then the odd ones, the diagonals likewise.
-//! Every second sweep runs the families backwards, so that none always has the last word.
+//! The order is fixed and red-black, so that the links of one vector share no particle and nothing depends on how the work
+//! is split: rows (even links along u, then odd ones) and the pairs of an even row and the next one (along v, the diagonals
+//! to the lower right, to the lower left), then the pairs of an odd row and the next. A pair is swept as soon as all that
+//! comes before it is done, so that a sweep goes through memory once. Every second sweep runs all of that backwards, so that
+//! no family always has the last word.
+//!
+//! A vector without a link that is too long is left after the test of its lengths. In the others the links that are short
+//! enough keep the bits of their ends: they are chosen, not added to. So all widths have the same bits.
+#![allow(unsafe_code)] // pointers into planes whose lengths are checked once: see `Sheet::pointers`
 
-use crate::layout::{read, write};
-use crate::mask::cuts;
-use crate::math::{max, sqrt};
+use crate::force::TINY;
+use crate::math::sqrt;
+use crate::simd::{Pass, Three, Vector, load};
 
 /// Particles in rows: those of the cloth, or every so manieth of them.
 pub(crate) struct Sheet<'s> {
     pub rows: usize,
     pub columns: usize,
-    /// Numbers from a row to the next, and the place of the first particle.
+    /// Numbers from a row to the next, and the place of the first particle. A row has whole vectors of 16.
     pub stride: usize,
     pub first: usize,
     /// Positions in m.
@@ -41,98 +47,430 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    fn span_u(&self, column: usize, columns: usize) -> f32 {
-        (if column + 2 == columns { self.last_span[0] } else { self.span[0] }) as f32
+    fn over_diagonal(&self, span_u: usize, span_v: usize) -> f32 {
+        let (u, v) = (self.rest_u * span_u as f32, self.rest_v * span_v as f32);
+        self.diagonal * sqrt(u * u + v * v)
     }
 
-    fn span_v(&self, row: usize, rows: usize) -> f32 {
-        (if row + 2 == rows { self.last_span[1] } else { self.span[1] }) as f32
+    /// Along v between two rows, and along both diagonals there; where `last`, between the last two rows.
+    pub(crate) fn across(&self, columns: usize, last: bool) -> (f32, Family) {
+        let ([u, v], [last_u, last_v]) = (self.span, self.last_span);
+        let v = if last { last_v } else { v };
+        let links = columns.saturating_sub(1);
+        (self.v * v as f32, Family::new(self.over_diagonal(u, v), self.over_diagonal(last_u, v), links))
+    }
+
+    /// Along u.
+    pub(crate) fn along(&self, columns: usize) -> Family {
+        let ([u, _], [last_u, _]) = (self.span, self.last_span);
+        Family::new(self.u * u as f32, self.u * last_u as f32, columns.saturating_sub(1))
     }
 }
 
+/// Numbers of the tables of [`Family`]: whichever lane holds the last link, 16 before it, 16 beyond, and a vector.
+const TABLE: usize = 48;
+
+/// The limits of the links that start side by side in a row: one for all but the last, another for that, none beyond.
+pub(crate) struct Family {
+    pub(crate) links: usize,
+    limit: f32,
+    /// Limits and their squares around the last link, which is number 16.
+    ends: [f32; TABLE],
+    squares: [f32; TABLE],
+}
+
+impl Family {
+    fn new(limit: f32, last: f32, links: usize) -> Family {
+        let (mut ends, mut squares) = ([limit; TABLE], [f32::INFINITY; TABLE]);
+        for (i, (end, square)) in ends.iter_mut().zip(&mut squares).enumerate().take(17) {
+            *end = if i == 16 { last } else { limit };
+            *square = *end * *end;
+        }
+        Family { links, limit, ends, squares }
+    }
+
+    /// Limits and their squares of the links that start in the lanes from a column of the sheet on.
+    #[inline(always)]
+    pub(crate) fn at<V: Vector>(&self, zero: V, column: usize) -> (V, V) {
+        if column.wrapping_add(V::LANES) < self.links {
+            (zero.all(self.limit), zero.all(self.limit * self.limit))
+        } else {
+            let i = column.wrapping_add(17).wrapping_sub(self.links);
+            (zero.read(&self.ends, i), zero.read(&self.squares, i))
+        }
+    }
+}
+
+/// Where the numbers of a sheet lie: column 0 of row 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Pointers {
+    pub x: [*mut f32; 3],
+    pub inverse: *const f32,
+    pub mask: *const f32,
+}
+
 impl Sheet<'_> {
-    /// `sweeps` sweeps over all links.
-    pub fn sweep(&mut self, sweeps: u32) {
-        for s in 0..sweeps {
-            if s % 2 == 0 {
-                self.along_u();
-                self.along_v();
-                self.diagonals(true);
-                self.diagonals(false);
-            } else {
-                self.diagonals(false);
-                self.diagonals(true);
-                self.along_v();
-                self.along_u();
-            }
+    /// None where a plane is too short: `rows` rows of `stride` numbers and 17 more.
+    pub(crate) fn pointers(&mut self) -> Option<Pointers> {
+        let end = self.rows.checked_mul(self.stride)?.checked_add(self.first)?.checked_add(17)?;
+        if self.columns.div_ceil(16) * 16 > self.stride {
+            return None;
         }
+        let read = |plane: &[f32]| plane.get(self.first..end).map(|p| p.as_ptr());
+        let [x, y, z] = &mut self.x;
+        let write = |plane: &mut [f32]| plane.get_mut(self.first..end).map(|p| p.as_mut_ptr());
+        Some(Pointers {
+            x: [write(x)?, write(y)?, write(z)?],
+            inverse: read(self.inverse)?,
+            mask: if self.mask.is_empty() { core::ptr::null() } else { read(self.mask)? },
+        })
     }
+}
 
-    fn along_u(&mut self) {
-        for row in 0..self.rows {
-            let at = self.first + row * self.stride;
-            for parity in 0..2 {
-                for column in (parity..self.columns.saturating_sub(1)).step_by(2) {
-                    let limit = self.reach.u * self.reach.span_u(column, self.columns);
-                    self.draw_back(at + column, at + column + 1, 0, limit);
-                }
-            }
-        }
+/// Sweeps over all links, at most `sweeps`: fewer where one found nothing too long. Whether anything was moved.
+pub(crate) struct Sweeps<'s> {
+    pub sheet: Sheet<'s>,
+    pub sweeps: u32,
+}
+
+impl Pass for Sweeps<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) -> bool {
+        if self.sheet.mask.is_empty() { self.all::<V, false>(zero) } else { self.all::<V, true>(zero) }
     }
+}
 
-    fn along_v(&mut self) {
-        for parity in 0..2 {
-            for row in (parity..self.rows.saturating_sub(1)).step_by(2) {
-                let at = self.first + row * self.stride;
-                let limit = self.reach.v * self.reach.span_v(row, self.rows);
-                for column in 0..self.columns {
-                    self.draw_back(at + column, at + column + self.stride, 1, limit);
-                }
-            }
-        }
-    }
+/// Lanes 0, 1, 0, 1, ...
+const ODD: [f32; 16] = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0];
 
-    /// The links to the lower right, or to the lower left.
-    fn diagonals(&mut self, right: bool) {
-        let (columns, reach) = (self.columns, self.reach);
-        for parity in 0..2 {
-            for row in (parity..self.rows.saturating_sub(1)).step_by(2) {
-                let at = self.first + row * self.stride;
-                let v = reach.rest_v * reach.span_v(row, self.rows);
-                let limit = |column: usize| {
-                    let u = reach.rest_u * reach.span_u(column, columns);
-                    reach.diagonal * sqrt(u * u + v * v)
-                };
-                let (inner, outer) = (limit(0), limit(columns - 2));
-                for column in 0..columns.saturating_sub(1) {
-                    let limit = if column + 2 == columns { outer } else { inner };
-                    let (upper, lower) = (at + column, at + column + self.stride);
-                    if right {
-                        self.draw_back(upper, lower + 1, 2, limit);
-                    } else {
-                        self.draw_back(upper + 1, lower, 3, limit);
+/// What is the same in a whole sweep.
+struct Constants<V> {
+    zero: V,
+    half: V,
+    one: V,
+    infinity: V,
+    tiny: V,
+    odd: V,
+    columns: usize,
+    stride: usize,
+}
+
+impl Sweeps<'_> {
+    #[inline(always)]
+    fn all<V: Vector, const MASK: bool>(mut self, zero: V) -> bool {
+        let Some(p) = self.sheet.pointers() else {
+            return false;
+        };
+        let s = &self.sheet;
+        let c = Constants {
+            zero,
+            half: zero.all(0.5),
+            one: zero.all(1.0),
+            infinity: zero.all(f32::INFINITY),
+            tiny: zero.all(TINY),
+            odd: zero.read(&ODD, 0),
+            columns: s.columns,
+            stride: s.stride,
+        };
+        let along = s.reach.along(s.columns);
+        let across = [s.reach.across(s.columns, false), s.reach.across(s.columns, true)];
+        let pair = |row: usize| if row + 2 == s.rows { &across[1] } else { &across[0] };
+        let mut any = false;
+        // SAFETY: `pointers` has checked the lengths. The links of a row begin at columns below `columns` rounded up to
+        // whole vectors, which is at most the stride, and reach one place farther in the same row or the next; nothing is
+        // begun in the last row but links along u.
+        unsafe {
+            for sweep in 0..self.sweeps {
+                let mut moved = false;
+                if sweep % 2 == 0 {
+                    let mut row = 0;
+                    while row < s.rows {
+                        moved |= along_u::<V, MASK>(&c, &p, &along, row);
+                        if row + 1 < s.rows {
+                            moved |= along_u::<V, MASK>(&c, &p, &along, row + 1);
+                            moved |= across_pair::<V, MASK, false>(&c, &p, pair(row), row);
+                        }
+                        if row > 0 {
+                            moved |= across_pair::<V, MASK, false>(&c, &p, pair(row - 1), row - 1);
+                        }
+                        row += 2;
+                    }
+                } else {
+                    let mut rows_left = s.rows.div_ceil(2);
+                    while rows_left > 0 {
+                        rows_left -= 1;
+                        let row = 2 * rows_left;
+                        if row > 0 {
+                            moved |= across_pair::<V, MASK, true>(&c, &p, pair(row - 1), row - 1);
+                        }
+                        if row + 1 < s.rows {
+                            moved |= across_pair::<V, MASK, true>(&c, &p, pair(row), row);
+                            moved |= along_u::<V, MASK>(&c, &p, &along, row + 1);
+                        }
+                        moved |= along_u::<V, MASK>(&c, &p, &along, row);
                     }
                 }
+                if !moved {
+                    break;
+                }
+                any = true;
             }
+        }
+        any
+    }
+}
+
+/// Squares of limits, without one where absent particles cut the link: one of its ends, or both places beside a diagonal.
+///
+/// # Safety
+/// The mask has the lanes from each place on.
+#[inline(always)]
+pub(crate) unsafe fn uncut<V: Vector>(
+    zero: V,
+    p: &Pointers,
+    square: V,
+    ends: [usize; 2],
+    beside: Option<[usize; 2]>,
+) -> V {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut there = load(zero, p.mask, ends[0]) * load(zero, p.mask, ends[1]);
+        if let Some([a, b]) = beside {
+            there = there * (load(zero, p.mask, a) + load(zero, p.mask, b));
+        }
+        there.above(zero, square, zero.all(f32::INFINITY))
+    }
+}
+
+/// The way of the first ends of links for an inverse mass of 1: d (l - limit) / (l (w + w')).
+#[inline(always)]
+fn drawn<V: Vector>(c: &Constants<V>, d: Three<V>, d2: V, limit: V, w: V) -> Three<V> {
+    let l = d2.sqrt();
+    // tiny: where neither end moves
+    d.times((l - limit) / (l * w.max(c.tiny)))
+}
+
+/// Draws back the links between the lanes at two places, which have no particle in common. Whether any was too long.
+///
+/// # Safety
+/// The planes have the lanes from both places on.
+#[inline(always)]
+unsafe fn draw_back<V: Vector>(c: &Constants<V>, p: &Pointers, at: [usize; 2], limit: V, square: V) -> bool {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (here, there) = (Three::load(c.zero, &p.x, at[0]), Three::load(c.zero, &p.x, at[1]));
+        let d = there.minus(here);
+        let d2 = d.squared();
+        if !d2.any_above(square) {
+            return false;
+        }
+        let (w, w_there) = (load(c.zero, p.inverse, at[0]), load(c.zero, p.inverse, at[1]));
+        let e = drawn(c, d, d2, limit, w + w_there);
+        let minus = Three([c.zero; 3]).minus(e);
+        Three::choose(d2, square, here.plus(e.times(w)), here).store(&p.x, at[0]);
+        Three::choose(d2, square, there.plus(minus.times(w_there)), there).store(&p.x, at[1]);
+        true
+    }
+}
+
+/// The links between a row and the next one; `BACK`: in the opposite order.
+///
+/// # Safety
+/// The rows are in the sheet.
+#[inline(always)]
+unsafe fn across_pair<V: Vector, const MASK: bool, const BACK: bool>(
+    c: &Constants<V>,
+    p: &Pointers,
+    (along_v, diagonal): &(f32, Family),
+    row: usize,
+) -> bool {
+    let upper = row.wrapping_mul(c.stride);
+    let lower = upper.wrapping_add(c.stride);
+    let mut moved = false;
+    let mut part = 0;
+    while part < 3 {
+        let family = if BACK { 2 - part } else { part };
+        // numbers beyond the first and second ends, and beyond the places beside a diagonal
+        let (at, to, links) = match family {
+            0 => (upper, lower, c.columns),
+            1 => (upper, lower.wrapping_add(1), diagonal.links),
+            _ => (upper.wrapping_add(1), lower, diagonal.links),
+        };
+        let mut column = 0;
+        while column < links {
+            let ends = [at.wrapping_add(column), to.wrapping_add(column)];
+            // SAFETY: the caller's promise. Beyond the columns there are zeros, so that no link along v is long there.
+            unsafe {
+                let (limit, mut square) = if family == 0 {
+                    (c.zero.all(*along_v), c.zero.all(*along_v * *along_v))
+                } else {
+                    diagonal.at(c.zero, column)
+                };
+                if MASK {
+                    let beside = match family {
+                        0 => None,
+                        1 => Some([ends[0].wrapping_add(1), ends[1].wrapping_sub(1)]),
+                        _ => Some([ends[0].wrapping_sub(1), ends[1].wrapping_add(1)]),
+                    };
+                    square = uncut(c.zero, p, square, ends, beside);
+                }
+                moved |= draw_back(c, p, ends, limit, square);
+            }
+            column = column.wrapping_add(V::LANES);
+        }
+        part += 1;
+    }
+    moved
+}
+
+/// The links along a row: those that begin at even columns, then those at odd ones.
+///
+/// # Safety
+/// The row is in the sheet.
+#[inline(always)]
+unsafe fn along_u<V: Vector, const MASK: bool>(c: &Constants<V>, p: &Pointers, family: &Family, row: usize) -> bool {
+    let first = row.wrapping_mul(c.stride);
+    let mut moved = false;
+    if V::LANES == 1 {
+        for parity in 0..2 {
+            let mut column = parity;
+            while column < family.links {
+                let at = first.wrapping_add(column);
+                let ends = [at, at.wrapping_add(1)];
+                // SAFETY: the caller's promise.
+                unsafe {
+                    let (limit, mut square) = family.at(c.zero, column);
+                    if MASK {
+                        square = uncut(c.zero, p, square, ends, None);
+                    }
+                    moved |= draw_back(c, p, ends, limit, square);
+                }
+                column += 2;
+            }
+        }
+        return moved;
+    }
+    // The odd links of a vector end in the next one, whose even links must be done before: so they are one vector behind.
+    let none = Half { e: Three([c.zero; 3]), long: c.zero };
+    let mut before = none;
+    let mut pending = false;
+    let mut column = 0;
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut this = even::<V, MASK>(c, p, family, first, 0);
+        while column < c.columns {
+            let ahead = column.wrapping_add(V::LANES);
+            let next = ahead < c.columns && even::<V, MASK>(c, p, family, first, ahead);
+            moved |= this;
+            // nothing too long here before, and nothing here or at the end of the last link has moved
+            if this || next || pending {
+                (before, pending) = odd::<V, MASK>(c, p, family, first, column, before);
+                moved |= pending;
+            } else {
+                before = none;
+            }
+            this = next;
+            column = ahead;
         }
     }
+    moved
+}
 
-    /// Draws a link that is too long back to its limit. `plane` is that of its spring, as [`cuts`] has it.
-    #[inline(always)]
-    fn draw_back(&mut self, at: usize, other: usize, plane: usize, limit: f32) {
-        let [x, y, z] = &mut self.x;
-        let way = |p: &[f32]| read(p, other) - read(p, at);
-        let d = [way(x), way(y), way(z)];
-        let [dx, dy, dz] = d;
-        let d2 = dx * dx + dy * dy + dz * dz;
-        if d2 > limit * limit && !cuts(self.mask, self.stride, at, other, plane) {
-            let (w, w_other) = (read(self.inverse, at), read(self.inverse, other));
-            let f = (1.0 - limit / sqrt(d2)) / max(w + w_other, f32::MIN_POSITIVE);
-            for (p, d) in [x, y, z].into_iter().zip(d) {
-                let (here, there) = (read(p, at) + d * (f * w), read(p, other) - d * (f * w_other));
-                write(p, at, here);
-                write(p, other, there);
-            }
+/// Half of the links of a vector: the ways of their first ends for an inverse mass of 1, and 1 for those that are too long.
+#[derive(Clone, Copy)]
+struct Half<V> {
+    e: Three<V>,
+    long: V,
+}
+
+/// Lanes of which each is the first end of a link in `half` or the second end of one that was begun a lane before.
+///
+/// # Safety
+/// The planes have the lanes from the place on.
+#[inline(always)]
+unsafe fn give<V: Vector>(c: &Constants<V>, p: &Pointers, at: usize, here: Three<V>, half: Half<V>, before: Half<V>) {
+    let (e, long) = (half.e.next1(before.e), half.long.next1(before.long));
+    let minus = Three([c.zero; 3]).minus(e);
+    // SAFETY: the caller's promise.
+    unsafe {
+        let way = Three::choose(half.long, c.half, half.e, minus).times(load(c.zero, p.inverse, at));
+        Three::choose(half.long + long, c.half, here.plus(way), here).store(&p.x, at);
+    }
+}
+
+/// The even links of a vector. Whether any of its links, also an odd one, was too long.
+///
+/// # Safety
+/// The planes have the lanes from the place on and one more.
+#[inline(always)]
+unsafe fn even<V: Vector, const MASK: bool>(
+    c: &Constants<V>,
+    p: &Pointers,
+    family: &Family,
+    first: usize,
+    column: usize,
+) -> bool {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (at, limit, square, here, d, d2) = lengths::<V, MASK>(c, p, family, first, column);
+        if !d2.any_above(square) {
+            return false;
         }
+        let square = c.odd.above(c.half, c.infinity, square);
+        let w = load(c.zero, p.inverse, at) + load(c.zero, p.inverse, at.wrapping_add(1));
+        let half = Half { e: drawn(c, d, d2, limit, w), long: d2.above(square, c.one, c.zero) };
+        give(c, p, at, here, half, Half { e: Three([c.zero; 3]), long: c.zero });
+        true
+    }
+}
+
+/// The odd links of a vector; `before` are those of the vector before. Whether any of them was too long.
+///
+/// # Safety
+/// The planes have the lanes from the place on and one more.
+#[inline(always)]
+unsafe fn odd<V: Vector, const MASK: bool>(
+    c: &Constants<V>,
+    p: &Pointers,
+    family: &Family,
+    first: usize,
+    column: usize,
+    before: Half<V>,
+) -> (Half<V>, bool) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (at, limit, square, here, d, d2) = lengths::<V, MASK>(c, p, family, first, column);
+        let square = c.odd.above(c.half, square, c.infinity);
+        let w = load(c.zero, p.inverse, at) + load(c.zero, p.inverse, at.wrapping_add(1));
+        let half = Half { e: drawn(c, d, d2, limit, w), long: d2.above(square, c.one, c.zero) };
+        give(c, p, at, here, half, before);
+        (half, d2.any_above(square))
+    }
+}
+
+/// Place, limits, their squares, first ends, differences and squared lengths of the links along u of a vector.
+///
+/// # Safety
+/// The planes have the lanes from the place on and one more.
+#[inline(always)]
+unsafe fn lengths<V: Vector, const MASK: bool>(
+    c: &Constants<V>,
+    p: &Pointers,
+    family: &Family,
+    first: usize,
+    column: usize,
+) -> (usize, V, V, Three<V>, Three<V>, V) {
+    let at = first.wrapping_add(column);
+    let (limit, mut square) = family.at(c.zero, column);
+    // SAFETY: the caller's promise.
+    unsafe {
+        if MASK {
+            square = uncut(c.zero, p, square, [at, at.wrapping_add(1)], None);
+        }
+        let here = Three::load(c.zero, &p.x, at);
+        let d = Three::load(c.zero, &p.x, at.wrapping_add(1)).minus(here);
+        (at, limit, square, here, d, d.squared())
     }
 }

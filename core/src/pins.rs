@@ -165,6 +165,14 @@ impl Cloth<'_> {
         }
     }
 
+    /// The pins stay where they are.
+    pub(crate) fn drop_pin_ways(&mut self) {
+        for i in 0..self.pins.count {
+            let pin = self.pins.get(i);
+            self.pins.set(i, Pin { to: pin.from, ..pin });
+        }
+    }
+
     /// The next frame starts where this one ended.
     pub(crate) fn finish_pins(&mut self) {
         for i in 0..self.pins.count {

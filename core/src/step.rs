@@ -9,10 +9,23 @@ pub struct StepFlags(pub u32);
 
 impl StepFlags {
     /// The frame would have ended with a number that is not finite. It was taken back whole: positions, velocities, pins
-    /// and step index are those before the call; pin targets and forces of the frame are dropped.
+    /// and step index are those before the call; pin targets, forces and the ways of colliders and targets of the frame are
+    /// dropped. One of the flags `NON_FINITE_*` names the cause beside it.
     pub const NON_FINITE: StepFlags = StepFlags(1);
     /// The cloth slept through the frame: only the step index has changed ([`crate::ClothDef::sleep_speed_m_s`]).
     pub const ASLEEP: StepFlags = StepFlags(2);
+    /// A pin is not finite, or without the ways of the pins the frame would have stayed finite.
+    pub const NON_FINITE_PIN: StepFlags = StepFlags(4);
+    /// The air is not finite, or in still air the frame would have stayed finite.
+    pub const NON_FINITE_AIR: StepFlags = StepFlags(8);
+    /// A force is not finite, or without the forces of [`Cloth::add_force`] the frame would have stayed finite.
+    pub const NON_FINITE_FORCE: StepFlags = StepFlags(16);
+    /// A collider is not finite, or without the ways of the colliders the frame would have stayed finite.
+    pub const NON_FINITE_COLLIDER: StepFlags = StepFlags(32);
+    /// A skinned target is not finite, or without the ways of the targets the frame would have stayed finite.
+    pub const NON_FINITE_TARGET: StepFlags = StepFlags(64);
+    /// None of these: positions, velocities or springs themselves run away.
+    pub const NON_FINITE_STATE: StepFlags = StepFlags(128);
 
     /// Whether every flag of `other` is set.
     pub const fn contains(self, other: StepFlags) -> bool {
@@ -40,6 +53,32 @@ impl Cloth<'_> {
         }
         self.refresh(true);
         self.keep_good();
+        let bad = self.broken_inputs();
+        let finite = bad.0 == 0 && self.advance();
+        let flags = if finite {
+            self.finish_pins();
+            self.step_index += 1;
+            StepFlags(0)
+        } else {
+            let cause = if bad.0 == 0 { self.find_cause() } else { bad };
+            self.back_to_good();
+            self.implicit.reset();
+            self.drop_pin_ways();
+            StepFlags(StepFlags::NON_FINITE.0 | cause.0)
+        };
+        if self.layout.max_colliders > 0 {
+            self.finish_colliders(finite);
+        }
+        if self.layout.targets {
+            self.finish_targets(finite);
+        }
+        self.drop_forces();
+        self.settle(finite);
+        Ok(flags)
+    }
+
+    /// The substeps of a frame. Whether everything stayed finite.
+    pub(crate) fn advance(&mut self) -> bool {
         let c = self.constants();
         let substeps = self.def.substeps;
         for s in 1..=substeps {
@@ -55,32 +94,17 @@ impl Cloth<'_> {
             self.place_pins(share);
             self.constrain(&c, share);
         }
-        let finite = self.is_finite();
-        if finite {
-            self.finish_pins();
-            self.step_index += 1;
-        } else {
-            self.back_to_good();
-            self.implicit.reset();
-            for i in 0..self.pins.count {
-                let pin = self.pins.get(i);
-                self.pins.set(i, crate::pins::Pin { to: pin.from, ..pin });
-            }
-        }
-        if self.layout.max_colliders > 0 {
-            self.finish_colliders(finite);
-        }
-        if self.layout.targets {
-            self.finish_targets(finite);
-        }
+        self.is_finite()
+    }
+
+    /// The forces on single particles act in one frame only.
+    pub(crate) fn drop_forces(&mut self) {
         if self.has_pull {
             for p in &mut self.pull {
                 p.fill(0.0);
             }
             self.has_pull = false;
         }
-        self.settle(finite);
-        Ok(if finite { StepFlags(0) } else { StepFlags::NON_FINITE })
     }
 
     pub(crate) fn constants(&self) -> Substep {
@@ -124,7 +148,7 @@ impl Cloth<'_> {
         }
     }
 
-    fn back_to_good(&mut self) {
+    pub(crate) fn back_to_good(&mut self) {
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact(size).zip(planes) {

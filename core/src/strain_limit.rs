@@ -2,10 +2,11 @@
 //! far as the sweeps reach. What is moved is also given to the velocity, x += D and v += D/dt.
 
 use crate::force::Substep;
-use crate::layout::{Layout, copy, read, span, take};
-use crate::limit::{Reach, Sheet};
-use crate::mask::cuts;
-use crate::{Cloth, Error};
+use crate::layout::{Layout, copy, take};
+use crate::limit::{Reach, Sheet, Sweeps};
+use crate::simd::{Pass, Vector};
+use crate::within::LongRows;
+use crate::{Cloth, Error, simd};
 
 /// The sweeps aim at this share of the limit, since they come close to what they aim at but not below.
 pub(crate) const TARGET: f32 = 0.9;
@@ -45,21 +46,50 @@ impl Cloth<'_> {
         }
     }
 
-    /// `passes` sweeps over the links of the cloth itself.
-    pub(crate) fn sweep_finest(&mut self, c: &Substep, target: f32, passes: u32) {
+    /// Rows of the cloth, from `first` to `last`, as a sheet whose links may be `target` times their limits.
+    fn sheet(&mut self, c: &Substep, target: f32, (first, last): (usize, usize)) -> Sheet<'_> {
         let l = self.layout;
         let reach = self.reach(c, target, [1, 1], [1, 1]);
         Sheet {
-            rows: l.rows,
+            rows: last.saturating_sub(first) + 1,
             columns: l.columns,
             stride: l.stride,
-            first: l.row(0),
+            first: l.row(first),
             x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
             inverse: self.inverse,
             mask: self.mask,
             reach,
         }
-        .sweep(passes);
+    }
+
+    /// First and last row of the cloth.
+    pub(crate) fn rows(&self) -> (usize, usize) {
+        (0, self.layout.rows.saturating_sub(1))
+    }
+
+    /// Sweeps over the links of the cloth itself.
+    pub(crate) fn sweep_finest(&mut self, c: &Substep, target: f32) {
+        self.sweep_rows(c, target, self.rows(), self.def.strain_passes);
+    }
+
+    /// Sweeps over the links of some rows.
+    pub(crate) fn sweep_rows(&mut self, c: &Substep, target: f32, rows: (usize, usize), sweeps: u32) {
+        let width = self.width;
+        simd::run(width, Sweeps { sheet: self.sheet(c, target, rows), sweeps });
+    }
+
+    /// Whether a sweep that aims at a share of the limit would move nothing.
+    pub(crate) fn is_within(&mut self, c: &Substep, share: f32) -> bool {
+        let (width, rows) = (self.width, self.rows());
+        simd::run(width, LongRows { sheet: self.sheet(c, share, rows), diagonals: true, any: true }).is_none()
+    }
+
+    /// The first and the last row of some where a structural link is beyond its limit.
+    pub(crate) fn long_rows(&mut self, c: &Substep, rows: (usize, usize)) -> Option<(usize, usize)> {
+        let width = self.width;
+        let (first, last) =
+            simd::run(width, LongRows { sheet: self.sheet(c, 1.0, rows), diagonals: false, any: false })?;
+        Some((rows.0 + first, rows.0 + last))
     }
 
     /// Keeps the positions as they are, for [`Cloth::finish_limits`].
@@ -71,63 +101,45 @@ impl Cloth<'_> {
 
     /// Gives what the limits moved to the velocities.
     pub(crate) fn finish_limits(&mut self, c: &Substep) {
-        let l = self.layout;
-        let per_s = 1.0 / c.dt;
-        let planes = [(&*self.x.x, &mut *self.v.x), (&*self.x.y, &mut *self.v.y), (&*self.x.z, &mut *self.v.z)];
-        for ((x, v), before) in planes.into_iter().zip(&self.before.planes) {
-            for row in 0..l.rows {
-                let at = l.row(row);
-                let Some(v) = v.get_mut(at..at + l.width) else {
-                    continue;
-                };
-                for ((v, x), b) in v.iter_mut().zip(span(x, at, l.width)).zip(span(before, at, l.width)) {
-                    *v += (x - b) * per_s;
-                }
-            }
-        }
-    }
-
-    /// Whether no structural link is strained by more than a share of its limit.
-    pub(crate) fn within_limits(&self, c: &Substep, share: f32) -> bool {
-        let l = self.layout;
-        let [warp, weft, _] = self.def.strain_limit;
-        let [u, v] = [c.rest_u * (1.0 + share * weft), c.rest_v * (1.0 + share * warp)];
-        (0..l.rows).all(|row| {
-            let at = l.row(row);
-            !self.any_longer(at, at + 1, l.columns.saturating_sub(1), 0, u)
-                && (row + 1 == l.rows || !self.any_longer(at, at + l.stride, l.columns, 1, v))
-        })
-    }
-
-    /// Whether no diagonal is longer than what the sweeps aim at.
-    pub(crate) fn diagonals_within(&self, c: &Substep) -> bool {
-        let l = self.layout;
-        let [_, _, diagonal] = self.def.strain_limit;
-        let limit = c.rest_diagonal * (1.0 + TARGET * diagonal);
-        let n = l.columns.saturating_sub(1);
-        (0..l.rows.saturating_sub(1)).all(|row| {
-            let (at, below) = (l.row(row), l.row(row + 1));
-            !self.any_longer(at, below + 1, n, 2, limit) && !self.any_longer(at + 1, below, n, 3, limit)
-        })
-    }
-
-    /// Whether one of `n` links side by side, the first between two places, is longer than a limit. `plane` as in [`cuts`].
-    fn any_longer(&self, at: usize, other: usize, n: usize, plane: usize, limit: f32) -> bool {
-        let p = self.x.view();
-        let mut long = false;
-        for i in 0..n {
-            let way = |p: &[f32]| read(p, other + i) - read(p, at + i);
-            let (dx, dy, dz) = (way(p.x), way(p.y), way(p.z));
-            long |= dx * dx + dy * dy + dz * dz > limit * limit
-                && !cuts(self.mask, self.layout.stride, at + i, other + i, plane);
-        }
-        long
+        let v = [&mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
+        let x = [&*self.x.x, &*self.x.y, &*self.x.z];
+        let before = self.before.planes.each_ref().map(|p| &**p);
+        simd::run(self.width, Finish { layout: self.layout, per_s: 1.0 / c.dt, x, v, before });
     }
 
     /// The limit alone: positions and velocities.
     pub(crate) fn apply_strain_limit(&mut self, c: &Substep) {
-        self.begin_limits();
-        self.sweep_finest(c, TARGET, self.def.strain_passes);
-        self.finish_limits(c);
+        if !self.is_within(c, TARGET) {
+            self.begin_limits();
+            self.sweep_finest(c, TARGET);
+            self.finish_limits(c);
+        }
+    }
+}
+
+/// v += (x - before) / dt.
+struct Finish<'f> {
+    layout: Layout,
+    per_s: f32,
+    x: [&'f [f32]; 3],
+    v: [&'f mut [f32]; 3],
+    before: [&'f [f32]; 3],
+}
+
+impl Pass for Finish<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) {
+        let (l, per_s) = (self.layout, zero.all(self.per_s));
+        for ((x, v), before) in self.x.into_iter().zip(self.v).zip(self.before) {
+            for row in 0..l.rows {
+                let (mut at, end) = (l.row(row), l.row(row) + l.columns);
+                while at < end {
+                    (zero.read(v, at) + (zero.read(x, at) - zero.read(before, at)) * per_s).write(v, at);
+                    at += V::LANES;
+                }
+            }
+        }
     }
 }

@@ -4,30 +4,54 @@
 //! One-sided: a tether pulls, it never pushes. What it moves is also given to the velocity, x += D and v += D/dt.
 
 use crate::force::Substep;
-use crate::layout::{Layout, read, take, write};
-use crate::math::{max, sqrt};
+use crate::layout::{read, span, take, write};
+use crate::math::{max, round16, sqrt};
+use crate::simd::{Pass, Three, Vector};
 use crate::strain_limit::TARGET;
-use crate::{Cloth, Error};
+use crate::{Cloth, Error, simd};
 
 /// Tethers of a particle.
 pub(crate) const TETHERS: usize = 2;
 
-/// The tethers of a cloth: of each particle the places of its two nearest pins, the nearest last, as the bits of a u32, and
-/// the largest lengths in m; infinite where there is no such pin.
+/// Particles that are looked at together: one vector of the widest kind.
+const BLOCK: usize = 16;
+/// Where the particles of a block have different pins. No particle is at this place of a plane.
+const MIXED: u32 = 0;
+
+/// The tethers of particles in rows: of each the places of its two nearest pins, the nearest last, as the bits of a u32, and
+/// the largest lengths in m; infinite where there is no such pin or the particle does not move.
 pub(crate) struct Tethers<'a> {
     pub pin: [&'a mut [f32]; TETHERS],
     pub length: [&'a mut [f32]; TETHERS],
+    /// For each [`BLOCK`] of a plane the place of the pin that all have, as `pin`, or [`MIXED`].
+    pub common: [&'a mut [f32]; TETHERS],
 }
 
 impl<'a> Tethers<'a> {
-    /// f32 numbers that they need.
-    pub fn numbers(l: &Layout) -> usize {
-        if l.has_tethers() { 2 * TETHERS * l.plane } else { 0 }
+    /// f32 numbers that they need for planes of a length.
+    pub fn numbers(plane: usize) -> usize {
+        TETHERS * (2 * plane + round16(plane.div_ceil(BLOCK)))
     }
 
-    pub fn new(l: &Layout, block: &mut &'a mut [f32]) -> Result<Self, Error> {
-        let n = if l.has_tethers() { l.plane } else { 0 };
-        Ok(Tethers { pin: [take(block, n)?, take(block, n)?], length: [take(block, n)?, take(block, n)?] })
+    pub fn new(plane: usize, block: &mut &'a mut [f32]) -> Result<Self, Error> {
+        let blocks = round16(plane.div_ceil(BLOCK));
+        Ok(Tethers {
+            pin: [take(block, plane)?, take(block, plane)?],
+            length: [take(block, plane)?, take(block, plane)?],
+            common: [take(block, blocks)?, take(block, blocks)?],
+        })
+    }
+
+    /// Finds the blocks with one pin, after pins and lengths have been written.
+    pub fn find_common(&mut self) {
+        for ((pins, lengths), common) in self.pin.iter().zip(&self.length).zip(&mut self.common) {
+            for ((pins, lengths), common) in pins.chunks(BLOCK).zip(lengths.chunks(BLOCK)).zip(common.iter_mut()) {
+                let mut held = pins.iter().zip(lengths).filter(|(_, l)| **l < f32::INFINITY).map(|(p, _)| p.to_bits());
+                // where nothing is held any place will do
+                let first = held.next().unwrap_or(1);
+                *common = f32::from_bits(if held.all(|p| p == first) { first } else { MIXED });
+            }
+        }
     }
 }
 
@@ -38,16 +62,111 @@ pub(crate) fn slack(u: f32, v: f32, [warp, weft, diagonal]: [f32; 3]) -> f32 {
     if long > 0.0 { axis + (diagonal - axis) * (short / long) } else { axis }
 }
 
-/// Moves a point to at most `length` from an anchor.
-#[inline(always)]
-pub(crate) fn pull_in(x: [f32; 3], anchor: [f32; 3], length: f32) -> [f32; 3] {
-    let d = [x[0] - anchor[0], x[1] - anchor[1], x[2] - anchor[2]];
-    let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    if d2 > length * length {
-        let s = length / sqrt(d2);
-        [anchor[0] + d[0] * s, anchor[1] + d[1] * s, anchor[2] + d[2] * s]
-    } else {
-        x
+/// Draws particles to where their tethers let them be. Whether any tether pulled.
+pub(crate) struct Pull<'p> {
+    pub rows: usize,
+    pub columns: usize,
+    pub stride: usize,
+    pub first: usize,
+    pub x: [&'p mut [f32]; 3],
+    /// Where the pins are; none where they are among `x`.
+    pub anchors: Option<[&'p [f32]; 3]>,
+    pub tethers: &'p Tethers<'p>,
+    /// Velocities and 1/dt, where they get what was moved.
+    pub velocity: Option<([&'p mut [f32]; 3], f32)>,
+    /// Nothing is moved, and the answer comes with the first tether that would pull.
+    pub look: bool,
+}
+
+impl Pass for Pull<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self, zero: V) -> bool {
+        let mut any = false;
+        for row in 0..self.rows {
+            let first = self.first.wrapping_add(row.wrapping_mul(self.stride));
+            let mut column = 0;
+            while column < self.columns {
+                any |= self.block(zero, first.wrapping_add(column));
+                if any && self.look {
+                    return true;
+                }
+                column = column.wrapping_add(BLOCK);
+            }
+        }
+        any
+    }
+}
+
+impl Pull<'_> {
+    #[inline(always)]
+    fn anchor(&self, place: usize) -> [f32; 3] {
+        let [x, y, z] = &self.x;
+        let [x, y, z] = match self.anchors {
+            Some(anchors) => anchors,
+            None => [&**x, &**y, &**z],
+        };
+        [read(x, place), read(y, place), read(z, place)]
+    }
+
+    /// The anchors of the lanes from a place on, one by one.
+    #[inline(always)]
+    fn anchors_of<V: Vector>(&self, zero: V, tether: usize, at: usize) -> Three<V> {
+        let mut each = [[0.0; BLOCK]; 3];
+        let [xs, ys, zs] = &mut each;
+        let pins = self.tethers.pin.get(tether).map_or(&[][..], |pins| span(pins, at, V::LANES));
+        for (((pin, x), y), z) in pins.iter().zip(xs).zip(ys).zip(zs) {
+            [*x, *y, *z] = self.anchor(pin.to_bits() as usize);
+        }
+        let [x, y, z] = &each;
+        Three([zero.read(x, 0), zero.read(y, 0), zero.read(z, 0)])
+    }
+
+    /// The particles of a block.
+    #[inline(always)]
+    fn block<V: Vector>(&mut self, zero: V, at: usize) -> bool {
+        let block = at / BLOCK;
+        let [common, common_last] = &self.tethers.common;
+        let pins = [read(common, block).to_bits(), read(common_last, block).to_bits()];
+        let anchors = [self.anchor(pins[0] as usize), self.anchor(pins[1] as usize)];
+        let (one, half) = (zero.all(1.0), zero.all(0.5));
+        let mut any = false;
+        let mut lane = 0;
+        while lane < BLOCK {
+            let at = at.wrapping_add(lane);
+            let [x, y, z] = &self.x;
+            let from = Three([zero.read(x, at), zero.read(y, at), zero.read(z, at)]);
+            let (mut to, mut pulled, mut pulls) = (from, zero, false);
+            for tether in 0..TETHERS {
+                let length = zero.read(self.tethers.length[tether], at);
+                let anchor = if pins[tether] == MIXED {
+                    self.anchors_of(zero, tether, at)
+                } else {
+                    let [x, y, z] = anchors[tether];
+                    Three([zero.all(x), zero.all(y), zero.all(z)])
+                };
+                let (d, square) = (to.minus(anchor), length * length);
+                let d2 = d.squared();
+                if d2.any_above(square) {
+                    to = Three::choose(d2, square, anchor.plus(d.times(length / d2.sqrt())), to);
+                    pulled = d2.above(square, one, pulled);
+                    pulls = true;
+                }
+            }
+            if pulls && !self.look {
+                let [x, y, z] = &mut self.x;
+                to.write([x, y, z], at);
+                if let Some(([x, y, z], per_s)) = &mut self.velocity {
+                    let v = Three([zero.read(x, at), zero.read(y, at), zero.read(z, at)]);
+                    let faster = v.plus(to.minus(from).times(zero.all(*per_s)));
+                    Three::choose(pulled, half, faster, v).write([x, y, z], at);
+                }
+            }
+            any |= pulls;
+            lane = lane.wrapping_add(V::LANES);
+        }
+        any
     }
 }
 
@@ -64,8 +183,15 @@ impl Cloth<'_> {
                 *slack = max(*slack, TARGET * limit);
             }
         }
+        for lengths in &mut self.tethers.length {
+            lengths.fill(f32::INFINITY);
+        }
         for row in 0..l.rows {
             for column in 0..l.columns {
+                let at = l.at(row, column);
+                if read(self.inverse, at) == 0.0 {
+                    continue;
+                }
                 // (squared rest distance, place, u, v) of the nearest and of the second
                 let mut near = [(f32::INFINITY, 0usize, 0.0f32, 0.0f32); TETHERS];
                 for pin in self.pins.iter() {
@@ -81,7 +207,6 @@ impl Cloth<'_> {
                         near = [first, (d2, i, u, v)];
                     }
                 }
-                let at = l.at(row, column);
                 let [first, second] = near;
                 for ((d2, pin, u, v), (pins, lengths)) in
                     [second, first].into_iter().zip(self.tethers.pin.iter_mut().zip(&mut self.tethers.length))
@@ -91,65 +216,39 @@ impl Cloth<'_> {
                 }
             }
         }
-    }
-
-    /// A position after the tethers of the particle at a place.
-    #[inline(always)]
-    pub(crate) fn tethered(&self, at: usize, mut x: [f32; 3]) -> [f32; 3] {
-        for (pin, length) in self.tethers.pin.iter().zip(&self.tethers.length) {
-            x = pull_in(x, self.local(read(pin, at).to_bits() as usize), read(length, at));
-        }
-        x
+        self.tethers.find_common();
+        self.attach_nodes();
     }
 
     /// Tethers alone: positions and velocities.
     pub(crate) fn apply_tethers(&mut self, c: &Substep) {
-        let per_s = 1.0 / c.dt;
-        self.each_tethered(|cloth, at, from, x| {
-            let v = [&*cloth.v.x, &*cloth.v.y, &*cloth.v.z].map(|p| read(p, at));
-            let d = [x[0] - from[0], x[1] - from[1], x[2] - from[2]];
-            cloth.set_velocity_at(at, [v[0] + d[0] * per_s, v[1] + d[1] * per_s, v[2] + d[2] * per_s]);
-        });
+        self.pull(Some(1.0 / c.dt), false);
     }
 
     /// The positions only, where what was moved goes to the velocities later.
     pub(crate) fn tether_particles(&mut self) {
-        self.each_tethered(|_, _, _, _| ());
+        self.pull(None, false);
     }
 
     /// Whether no tether pulls.
-    pub(crate) fn tethers_are_slack(&self) -> bool {
-        let l = self.layout;
-        self.pins.count == 0
-            || (0..l.rows).all(|row| {
-                (0..l.columns).all(|column| {
-                    let at = l.at(row, column);
-                    read(self.inverse, at) == 0.0 || {
-                        let x = self.local(at);
-                        self.tethered(at, x) == x
-                    }
-                })
-            })
+    pub(crate) fn tethers_are_slack(&mut self) -> bool {
+        !self.pull(None, true)
     }
 
-    fn each_tethered(&mut self, moved: impl Fn(&mut Self, usize, [f32; 3], [f32; 3])) {
-        if self.pins.count == 0 {
-            return;
-        }
+    fn pull(&mut self, per_s: Option<f32>, look: bool) -> bool {
         let l = self.layout;
-        for row in 0..l.rows {
-            for column in 0..l.columns {
-                let at = l.at(row, column);
-                if read(self.inverse, at) == 0.0 {
-                    continue;
-                }
-                let from = self.local(at);
-                let x = self.tethered(at, from);
-                if x != from {
-                    self.set_position_at(at, x);
-                    moved(self, at, from, x);
-                }
-            }
-        }
+        let [vx, vy, vz] = [&mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
+        let pull = Pull {
+            rows: l.rows,
+            columns: l.columns,
+            stride: l.stride,
+            first: l.row(0),
+            x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
+            anchors: None,
+            tethers: &self.tethers,
+            velocity: per_s.map(|per_s| ([vx, vy, vz], per_s)),
+            look,
+        };
+        self.pins.count > 0 && simd::run(self.width, pull)
     }
 }

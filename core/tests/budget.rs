@@ -104,7 +104,7 @@ fn the_flat_sheet_never_vibrates_faster_than_allowed() {
         highest[i] = highest[i].max(share);
     }
     // and the cases do come near it, or the test would not test
-    assert!(highest[1] > 0.7 && highest[0] > 0.3, "{highest:?}");
+    assert!(highest[1] > 0.7 && highest[0] > 0.2, "{highest:?}");
 }
 
 /// `Certified` holds in every shape: random shapes between crumpled and stretched.

@@ -195,7 +195,7 @@ const GOLDEN: [u64; 24] = [
     0xbad4_26da_7495_f73f,
     0x5469_136a_6a7f_6ea5,
     0x7db6_8529_c1e7_dcbc,
-    0x2b4c_2366_20b2_44c1,
+    0x6255_18e5_00c0_e5ce,
     0x9fe9_ff72_c38f_ad23,
     0x13b9_854b_5d78_681d,
     0x75ab_79d5_b058_4137,
@@ -203,7 +203,7 @@ const GOLDEN: [u64; 24] = [
     0x46c3_66c3_de9b_a1f7,
     0xf07a_fc5e_979c_56c5,
     0x6316_139a_9817_db18,
-    0x369f_ce4e_a020_8dbc,
+    0xda3b_2668_e4ac_3254,
     0xb644_ae5b_6cf8_8b04,
     0x5736_0724_2296_8ab5,
     0xa252_3cd2_f166_eaff,
@@ -211,7 +211,7 @@ const GOLDEN: [u64; 24] = [
     0x7f6f_f9b4_e769_d32a,
     0xaf22_2828_2b3e_ccf0,
     0x8e8a_b083_2d3f_6a8c,
-    0x9f8e_c4e4_865a_d057,
+    0x2fdb_04eb_1d7c_0935,
 ];
 
 #[test]

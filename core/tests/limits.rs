@@ -291,4 +291,4 @@ fn golden_and_replay() {
     assert_eq!(golden, GOLDEN, "{golden:#x?}");
 }
 
-const GOLDEN: [u64; 3] = [0xcfb5534bbd628f4e, 0x648cb0bcf69d86c9, 0x81954c5cadfefafe];
+const GOLDEN: [u64; 3] = [0xcfb5534bbd628f4e, 0x06973f087e4c3e25, 0x0484dd3bf921da8f];

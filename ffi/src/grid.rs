@@ -24,7 +24,7 @@ pub extern "C" fn taut_grid_def_default() -> GridDef {
 
 /// # Safety
 /// As [`value`].
-unsafe fn checked(def: *const GridDef) -> Result<taut_core::Grid, Code> {
+pub(crate) unsafe fn checked(def: *const GridDef) -> Result<taut_core::Grid, Code> {
     // SAFETY: promised by the caller; a definition is plain numbers.
     let d = unsafe { value(def) }?;
     if d.size as usize != size_of::<GridDef>() || d.cookie != COOKIE {

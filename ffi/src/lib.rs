@@ -5,17 +5,17 @@
 //! that holds unsafe code, all of it about memory that the caller hands in.
 //!
 //! In release builds (`panic = "abort"`) it links neither std nor alloc. Where panics unwind (tests, development) std
-//! brings the panic handler.
+//! brings the panic handler. The feature `generator` brings std, the inference engine and `include/taut_generator.h`.
 #![no_std]
 #![allow(
     clippy::missing_safety_doc,
     reason = "what a C caller must keep to is told once, in the chapter at the top of taut.h"
 )]
 
-#[cfg(panic = "unwind")]
+#[cfg(any(panic = "unwind", feature = "generator"))]
 extern crate std;
 
-#[cfg(all(panic = "abort", not(test)))]
+#[cfg(all(panic = "abort", not(test), not(feature = "generator")))]
 mod panic;
 
 mod pointer;
@@ -31,6 +31,8 @@ mod types;
 mod handle;
 
 mod grid;
+
+mod plan;
 
 mod cloth;
 
@@ -57,6 +59,8 @@ mod step;
 
 mod step_all;
 
+mod width;
+
 mod read;
 
 mod mesh;
@@ -65,3 +69,6 @@ mod sleep;
 mod pin_force;
 
 mod rollback;
+
+#[cfg(feature = "generator")]
+mod generator;

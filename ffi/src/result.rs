@@ -64,9 +64,17 @@ pub enum Code {
     TAUT_ERROR_NO_SUCH_COLLIDER = -26,
     /// There are TAUT_MAX_COLLIDERS colliders already.
     TAUT_ERROR_TOO_MANY_COLLIDERS = -27,
+    /// Not even the cheapest settings fit the time.
+    TAUT_ERROR_NO_PLAN = -28,
     /// The handle was not made by its create function, its block was overwritten, or the block was moved. Codes from -100
     /// on exist in C only.
     TAUT_ERROR_BAD_HANDLE = -100,
+    /// A file cannot be opened or read (taut_generator.h).
+    TAUT_ERROR_FILE = -101,
+    /// The generator knows no word of the description (taut_generator.h).
+    TAUT_ERROR_NO_KNOWN_WORD = -102,
+    /// The network of a generator file cannot be run, or answers with what is no stiffness (taut_generator.h).
+    TAUT_ERROR_INFERENCE = -103,
 }
 
 use Code::*;
@@ -118,6 +126,7 @@ rows! {
     TAUT_ERROR_ABSENT c"TAUT_ERROR_ABSENT" Absent,
     TAUT_ERROR_NO_SUCH_COLLIDER c"TAUT_ERROR_NO_SUCH_COLLIDER" NoSuchCollider,
     TAUT_ERROR_TOO_MANY_COLLIDERS c"TAUT_ERROR_TOO_MANY_COLLIDERS" TooManyColliders,
+    TAUT_ERROR_NO_PLAN c"TAUT_ERROR_NO_PLAN" NoPlan,
 }
 
 /// The codes that only C has.
@@ -128,6 +137,9 @@ const OWN: &[Row] = &[
         c"TAUT_ERROR_BAD_HANDLE",
         message!("the handle was not made by its create function or its block was overwritten or moved"),
     ),
+    (TAUT_ERROR_FILE, c"TAUT_ERROR_FILE", message!("the file cannot be opened or read")),
+    (TAUT_ERROR_NO_KNOWN_WORD, c"TAUT_ERROR_NO_KNOWN_WORD", message!("the generator knows no word of the description")),
+    (TAUT_ERROR_INFERENCE, c"TAUT_ERROR_INFERENCE", message!("the network of the generator file cannot be run")),
 ];
 
 // An error that core appends must be appended here too: without it this crate does not compile.
@@ -169,6 +181,13 @@ pub(crate) fn answer(body: impl FnOnce() -> Result<(), Code>) -> Code {
 
 fn row(code: i32) -> Option<&'static Row> {
     CORE.iter().chain(OWN).find(|r| r.0 as i32 == code)
+}
+
+/// The message of a code as a text.
+#[allow(dead_code, reason = "the generator's functions alone use it")]
+pub(crate) fn message_of(code: Code) -> &'static str {
+    let text = row(code as i32).and_then(|r| r.2.split_last());
+    text.and_then(|(_, text)| core::str::from_utf8(text).ok()).unwrap_or_default()
 }
 
 /// The name of a result as it stands in this header ("TAUT_ERROR_GRID_SIZE"), "TAUT_ERROR_UNKNOWN" for a number that is

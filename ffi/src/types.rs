@@ -42,10 +42,37 @@ pub const TAUT_FEATURE_IMPLICIT: u32 = 1024;
 pub const TAUT_MAX_COLLIDERS: usize = 32;
 
 /// A flag of taut_cloth_step: the frame would have ended with a number that is not finite. It was taken back whole:
-/// positions, velocities, pins and step index are those before the call; pin targets and forces of the frame are dropped.
+/// positions, velocities, pins and step index are those before the call; pin targets, forces and the ways of colliders and
+/// targets in the frame are dropped. One of the TAUT_STEP_NON_FINITE_* names the cause beside it.
 pub const TAUT_STEP_NON_FINITE: u32 = 1;
 /// A flag of taut_cloth_step: the cloth slept through the frame; only the step index has changed.
 pub const TAUT_STEP_ASLEEP: u32 = 2;
+/// A flag of taut_cloth_step: a pin is not finite, or without the ways of the pins the frame would have stayed finite.
+pub const TAUT_STEP_NON_FINITE_PIN: u32 = 4;
+/// A flag of taut_cloth_step: the air is not finite, or in still air the frame would have stayed finite.
+pub const TAUT_STEP_NON_FINITE_AIR: u32 = 8;
+/// A flag of taut_cloth_step: a force is not finite, or without the forces of taut_cloth_add_force the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_FORCE: u32 = 16;
+/// A flag of taut_cloth_step: a collider is not finite, or without the ways of the colliders the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_COLLIDER: u32 = 32;
+/// A flag of taut_cloth_step: a skinned target is not finite, or without the ways of the targets the frame would have stayed
+/// finite.
+pub const TAUT_STEP_NON_FINITE_TARGET: u32 = 64;
+/// A flag of taut_cloth_step: none of these; positions, velocities or springs themselves run away.
+pub const TAUT_STEP_NON_FINITE_STATE: u32 = 128;
+
+/// A flag of taut_budget_report: the predicted stretch is above 0.2. It is not within 15 % of what will be, and the cloth
+/// will look like rubber.
+pub const TAUT_BUDGET_ABOVE_RANGE: u32 = 1;
+/// A flag of taut_budget_report: there is no prediction. The cloth does not hang from a whole straight edge or from its two
+/// corners with nothing but its weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners),
+/// or its rest was not found. The bound holds.
+pub const TAUT_BUDGET_STRETCH_UNKNOWN: u32 = 2;
+/// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
+/// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+pub const TAUT_BUDGET_LIMIT_NOT_KEPT: u32 = 4;
 
 const _: () = {
     assert!(TAUT_MAX_SIDE == taut_core::Grid::MAX_SIDE);
@@ -71,6 +98,27 @@ const _: () = {
     assert!(Solver::TAUT_SOLVER_BDF2 as u32 == taut_core::Solver::Bdf2 as u32);
     assert!(TAUT_STEP_NON_FINITE == taut_core::StepFlags::NON_FINITE.0);
     assert!(TAUT_STEP_ASLEEP == taut_core::StepFlags::ASLEEP.0);
+    assert!(TAUT_STEP_NON_FINITE_PIN == taut_core::StepFlags::NON_FINITE_PIN.0);
+    assert!(TAUT_STEP_NON_FINITE_AIR == taut_core::StepFlags::NON_FINITE_AIR.0);
+    assert!(TAUT_STEP_NON_FINITE_FORCE == taut_core::StepFlags::NON_FINITE_FORCE.0);
+    assert!(TAUT_STEP_NON_FINITE_COLLIDER == taut_core::StepFlags::NON_FINITE_COLLIDER.0);
+    assert!(TAUT_STEP_NON_FINITE_TARGET == taut_core::StepFlags::NON_FINITE_TARGET.0);
+    assert!(TAUT_STEP_NON_FINITE_STATE == taut_core::StepFlags::NON_FINITE_STATE.0);
+    assert!(TAUT_BUDGET_ABOVE_RANGE == taut_core::BudgetFlags::ABOVE_RANGE.0);
+    assert!(TAUT_BUDGET_STRETCH_UNKNOWN == taut_core::BudgetFlags::STRETCH_UNKNOWN.0);
+    assert!(TAUT_BUDGET_LIMIT_NOT_KEPT == taut_core::BudgetFlags::LIMIT_NOT_KEPT.0);
+    assert!(Width::TAUT_WIDTH_SCALAR as u32 == taut_core::Width::Scalar as u32);
+    assert!(Width::TAUT_WIDTH_SSE2 as u32 == taut_core::Width::Sse2 as u32);
+    assert!(Width::TAUT_WIDTH_AVX2 as u32 == taut_core::Width::Avx2 as u32);
+    assert!(Width::TAUT_WIDTH_AVX512 as u32 == taut_core::Width::Avx512 as u32);
+    assert!(Width::TAUT_WIDTH_NEON as u32 == taut_core::Width::Neon as u32);
+    assert!(Hold::TAUT_HOLD_EDGE as u32 == taut_core::plan::Hold::Edge as u32);
+    assert!(Hold::TAUT_HOLD_HOOKS as u32 == taut_core::plan::Hold::Hooks as u32);
+    assert!(Hold::TAUT_HOLD_CORNERS as u32 == taut_core::plan::Hold::Corners as u32);
+    assert!(Hold::TAUT_HOLD_CORNER as u32 == taut_core::plan::Hold::Corner as u32);
+    assert!(Hold::TAUT_HOLD_LOOSE as u32 == taut_core::plan::Hold::Loose as u32);
+    assert!(Stiffness::TAUT_STIFFNESS_STIFFEST as u32 == taut_core::plan::PlanStiffness::Stiffest as u32);
+    assert!(Stiffness::TAUT_STIFFNESS_FABRIC as u32 == taut_core::plan::PlanStiffness::Fabric as u32);
     assert!(Budget::TAUT_BUDGET_CERTIFIED as u32 == taut_core::Budget::Certified as u32);
     assert!(Budget::TAUT_BUDGET_TUNED as u32 == taut_core::Budget::Tuned as u32);
 };
@@ -80,8 +128,8 @@ const _: () = {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Budget {
-    /// 0.35 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
-    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.44 of the stiffness of TAUT_BUDGET_TUNED.
+    /// 0.25 of the limit of the flat sheet, which holds for every shape of the cloth: stable from any start, and with some
+    /// damping (1/s) it comes to rest without any limit on speed or compression. 0.31 of the stiffness of TAUT_BUDGET_TUNED.
     TAUT_BUDGET_CERTIFIED = 0,
     /// 0.8 of the limit of the flat sheet. Needs the speed limit and some damping. The default.
     TAUT_BUDGET_TUNED = 1,
@@ -100,6 +148,23 @@ pub enum Solver {
     TAUT_SOLVER_BDF2 = 2,
 }
 
+/// The vectors that a cloth is stepped in. Each gives the same bits; only the time differs.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Width {
+    /// One number at a time: every processor.
+    TAUT_WIDTH_SCALAR = 0,
+    /// 4 numbers: every x86_64.
+    TAUT_WIDTH_SSE2 = 1,
+    /// 8 numbers: x86_64 with AVX2.
+    TAUT_WIDTH_AVX2 = 2,
+    /// 16 numbers: x86_64 with AVX-512F.
+    TAUT_WIDTH_AVX512 = 3,
+    /// 4 numbers: every aarch64.
+    TAUT_WIDTH_NEON = 4,
+}
+
 /// The shape of a collider.
 #[allow(non_camel_case_types, reason = "these are the names in C")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,6 +178,93 @@ pub enum ColliderShape {
     TAUT_SHAPE_PLANE = 3,
     /// A box around the collider's position: half_m.
     TAUT_SHAPE_BOX = 4,
+}
+
+/// How a sheet is held: what decides where it stretches, and how fast that grows with its grid.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Hold {
+    /// A whole edge is pinned: a banner, a flag, a cape along the shoulders.
+    TAUT_HOLD_EDGE = 0,
+    /// Points of an edge are pinned, at most a few cells apart: a curtain.
+    TAUT_HOLD_HOOKS = 1,
+    /// Two far corners are pinned.
+    TAUT_HOLD_CORNERS = 2,
+    /// One particle is pinned.
+    TAUT_HOLD_CORNER = 3,
+    /// Nothing is pinned, or an area: it lies on something.
+    TAUT_HOLD_LOOSE = 4,
+}
+
+/// Where a planned stiffness comes from.
+#[allow(non_camel_case_types, reason = "these are the names in C")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Stiffness {
+    /// As stiff as the step carries: taut_cloth_set_stiffness_uniform with 1e8 N/m four times. It stretches less than the
+    /// fabric.
+    TAUT_STIFFNESS_STIFFEST = 0,
+    /// The fabric's own.
+    TAUT_STIFFNESS_FABRIC = 1,
+}
+
+/// What is to be planned. Comes from taut_plan_def_default(), then change what you need.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PlanDef {
+    /// Bytes of this structure. Set by taut_plan_def_default().
+    pub size: u32,
+    /// Shows that the definition came from taut_plan_def_default().
+    pub cookie: u32,
+    /// How the sheet is held, a taut_hold. Default TAUT_HOLD_CORNERS.
+    pub hold: u32,
+    /// Largest structural strain at rest, above 0, at most 1 (0.05 is 5 %). Default 0.05.
+    pub tolerance: f32,
+    /// CPU time of a frame in ns, above 0. Default infinite.
+    pub budget_ns: f32,
+    /// CPU time of a plain particle-step on this machine in ns, above 0, at most 1e6: the time of a taut_cloth_step of a cloth
+    /// without features divided by its particles and substeps. Default 7.
+    pub plain_ns: f32,
+    /// Frames per second, 1 to 10,000. Default 60.
+    pub rate_hz: f32,
+    /// Size of gravity in m/s^2, above 0, at most 1e4. Default 9.81.
+    pub gravity_m_s2: f32,
+    /// Mass per area in kg/m^2, 1e-6 to 1e6. Default 0.2.
+    pub density_kg_m2: f32,
+    /// The fabric's warp, weft, shear and bend in N/m, each 0 to 1e9. Default 2000, 2000, 60, 1.
+    pub stiffness_n_m: [f32; 4],
+}
+
+/// Settings that a scene requires, and what to expect of them. The fields of the names of taut_cloth_def and taut_grid_def
+/// go there.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Plan {
+    /// The solver, a taut_solver.
+    pub solver: u32,
+    /// Substeps of a frame.
+    pub substeps: u32,
+    /// Iterations of an implicit solver.
+    pub cg_iterations: u32,
+    /// Spring families for the grid.
+    pub families: u32,
+    /// Features that the plan needs, to be or-ed with those that the scene needs.
+    pub features: u32,
+    /// Where the stiffness comes from, a taut_stiffness.
+    pub stiffness: u32,
+    /// Radius of the inertia field in m; 0 = none.
+    pub inertia_radius_m: f32,
+    /// For all three of strain_limit.
+    pub strain_limit: f32,
+    /// For all three of tether_slack.
+    pub tether_slack: f32,
+    /// Largest structural strain to expect at rest, with a margin that all measured rows stay under.
+    pub strain: f32,
+    /// CPU time to expect of a frame in ns.
+    pub frame_ns: f32,
+    /// 1 where the strain is within the tolerance; 0 where these are the settings of the least strain that fit the time.
+    pub meets: u32,
 }
 
 /// What a grid is made of. Comes from taut_grid_def_default(), then change what you need.
@@ -249,6 +401,15 @@ pub struct BudgetReport {
     pub inertia_added: f32,
     /// Share of the hinge rigidity that is kept, 0 to 1; 1 without hinges. Hinges may use a quarter of what the step can carry.
     pub hinge_fraction: f32,
+    /// Predicted strain of the most stretched structural spring (0.05 is 5 %), when the cloth hangs at rest from a whole edge or
+    /// from the two corners of one: within 15 % of what will be measured, up to 0.2. 0 where the flags say that it is unknown;
+    /// only taut_cloth_predict_stretch knows it.
+    pub stretch: f32,
+    /// What the largest strain never exceeds, in a cloth that started unstretched and whose pins do not move: at rest, and
+    /// unless stretch is known on the way there too. Infinite where nothing bounds it.
+    pub stretch_bound: f32,
+    /// TAUT_BUDGET_ABOVE_RANGE and so on, or-ed.
+    pub flags: u32,
 }
 
 /// Where something is in the world and how it is turned: a collider, the frame of a cloth.
@@ -412,6 +573,9 @@ impl From<taut_core::BudgetReport> for BudgetReport {
             cut_fraction: r.cut_fraction,
             inertia_added: r.inertia_added,
             hinge_fraction: r.hinge_fraction,
+            stretch: r.stretch,
+            stretch_bound: r.stretch_bound,
+            flags: r.flags.0,
         }
     }
 }

@@ -3,7 +3,7 @@
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use taut::field::FieldView;
-use taut::{Budget, Cloth, ClothDef, Error, Grid, GridDef, noise};
+use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Solver, noise};
 
 use crate::fabric::Fabric;
 use crate::metrics::{self, StretchPct};
@@ -19,6 +19,9 @@ pub const INERTIA_MAX: f32 = 32.0;
 
 /// Stiffness that every budget cuts: "as stiff as the step allows" in N/m.
 const BEYOND: f32 = 1e8;
+
+/// Warp, weft, shear, bend: the best of the analytic choices where the budget clamps them all.
+pub const RATIOS: [f32; 4] = [1.0, 1.0, 0.3, 0.02];
 
 /// What all settings of a comparison share.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,8 +65,14 @@ pub enum Setting {
     UniformInertia,
     /// [`Setting::Analytic`] with the inertia field.
     AnalyticInertia(Fabric),
+    /// As stiff as the step allows in the ratios [`RATIOS`], with the inertia field.
+    RatiosInertia,
     /// A generated field `[4][rows][columns]` in N/m with the inertia field.
     Generated(Vec<f32>),
+    /// Four numbers in N/m (warp, weft, shear, bend) that were fitted to strains ([`crate::front::fit`]).
+    DataDriven([f32; 4]),
+    /// A setting with limits on levels: the largest strain along warp, weft and diagonal.
+    Limited(Box<Setting>, [f32; 3]),
 }
 
 impl Setting {
@@ -76,12 +85,31 @@ impl Setting {
             Setting::Analytic(_) => "analytic",
             Setting::UniformInertia => "uniform_inertia",
             Setting::AnalyticInertia(_) => "analytic_inertia",
+            Setting::RatiosInertia => "ratios_inertia",
             Setting::Generated(_) => "generated",
+            Setting::DataDriven(_) => "data_driven",
+            Setting::Limited(of, _) => match **of {
+                Setting::UniformInertia => "uniform_limits",
+                Setting::AnalyticInertia(_) => "analytic_limits",
+                Setting::RatiosInertia => "ratios_limits",
+                Setting::Generated(_) => "generated_limits",
+                _ => "limits",
+            },
         }
     }
 
     fn has_inertia(&self) -> bool {
-        matches!(self, Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::Generated(_))
+        match self {
+            Setting::Limited(of, _) => of.has_inertia(),
+            Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::RatiosInertia | Setting::Generated(_) => {
+                true
+            }
+            Setting::Reference(_)
+            | Setting::Random
+            | Setting::Uniform
+            | Setting::Analytic(_)
+            | Setting::DataDriven(_) => false,
+        }
     }
 
     /// The field at the particles in N/m.
@@ -90,12 +118,91 @@ impl Setting {
         let constant = |k: [f32; 4]| k.iter().flat_map(|k| std::iter::repeat_n(*k, n)).collect();
         match self {
             Setting::Reference(f) | Setting::Analytic(f) | Setting::AnalyticInertia(f) => constant(f.stiffness),
+            Setting::DataDriven(k) => constant(*k),
             Setting::Uniform | Setting::UniformInertia => constant([BEYOND, BEYOND, BEYOND, BEYOND]),
             Setting::Random => {
                 // one matrix for all families, as the paper has it; U(0, 1) of the budget comes by the scale below
                 (0..4 * n).map(|i| noise::uniform(case.seed, (i % n) as u32)).collect()
             }
+            Setting::RatiosInertia => constant(RATIOS.map(|r| r * BEYOND)),
             Setting::Generated(field) => field.clone(),
+            Setting::Limited(of, _) => of.field(case),
+        }
+    }
+}
+
+/// What keeps lengths beside the springs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Limits {
+    /// Nothing.
+    #[default]
+    None,
+    /// Tethers with this slack in every direction.
+    Tethers(f32),
+    /// Two passes of the strain limit at this strain.
+    StrainLimit(f32),
+    /// Levels at this strain, with tethers of the same slack.
+    Levels(f32),
+}
+
+impl Limits {
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Limits::None => "none",
+            Limits::Tethers(_) => "tethers",
+            Limits::StrainLimit(_) => "strain_limit",
+            Limits::Levels(_) => "levels",
+        }
+    }
+
+    /// The slack or the strain.
+    pub fn strain(self) -> Option<f32> {
+        match self {
+            Limits::None => None,
+            Limits::Tethers(strain) | Limits::StrainLimit(strain) | Limits::Levels(strain) => Some(strain),
+        }
+    }
+
+    /// A definition with these limits.
+    pub fn fit(self, def: &ClothDef) -> ClothDef {
+        let features = match self {
+            Limits::None => Features::NONE,
+            Limits::Tethers(_) => Features::TETHERS,
+            Limits::StrainLimit(_) => Features::STRAIN_LIMIT,
+            Limits::Levels(_) => Features::LEVELS,
+        };
+        let strain = self.strain().map_or(def.strain_limit, |s| [s; 3]);
+        let slack = self.strain().map_or(def.tether_slack, |s| [s; 3]);
+        ClothDef { features: Features(def.features.0 | features.0), strain_limit: strain, tether_slack: slack, ..*def }
+    }
+}
+
+/// A cloth in a case: where its stiffness comes from and how it is stepped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Where the stiffness comes from.
+    pub setting: Setting,
+    /// Spring families.
+    pub families: Families,
+    /// The solver; the implicit ones take K as it is.
+    pub solver: Solver,
+    /// Iterations of each linearisation of an implicit solver.
+    pub cg_iterations: u32,
+    /// What keeps lengths beside the springs.
+    pub limits: Limits,
+}
+
+impl From<Setting> for Model {
+    /// All families, the explicit solver, no limits.
+    fn from(setting: Setting) -> Model {
+        let d = ClothDef::default();
+        Model {
+            setting,
+            families: Families::ALL,
+            solver: d.solver,
+            cg_iterations: d.cg_iterations,
+            limits: Limits::None,
         }
     }
 }
@@ -117,6 +224,8 @@ pub struct Outcome {
     pub inertia_added: f64,
     /// Thread CPU time per particle and substep.
     pub ns_per_particle_step: f64,
+    /// Memory of the cloth in bytes.
+    pub memory_bytes: usize,
     /// Whether the whole run stayed finite.
     pub finite: bool,
     /// Root mean square speed at the end in m/s: 0 is at rest.
@@ -128,17 +237,35 @@ pub struct Outcome {
     pub positions: Vec<[f32; 3]>,
 }
 
+/// A frame that was stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Its number, from 0 on.
+    pub index: u32,
+    /// How many there will be.
+    pub of: u32,
+    /// Thread CPU time of the step.
+    pub cpu: std::time::Duration,
+}
+
 /// Runs a case with a setting. `progress` is called after every frame with the share that is done.
 pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Result<Outcome, Error> {
+    run_model(case, &setting.clone().into(), |_, frame| progress((frame.index + 1) as f32 / frame.of as f32))
+}
+
+/// Runs a case with a model and shows every frame to `look`.
+pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Frame)) -> Result<Outcome, Error> {
+    let setting = &model.setting;
     let grid = Grid::new(&GridDef {
         rows: case.rows,
         columns: case.columns,
         width_m: case.size_m[0],
         height_m: case.size_m[1],
-        ..GridDef::default()
+        families: model.families,
     })?;
     let shape = (case.rows as usize, case.columns as usize);
-    let def = ClothDef {
+    let memory = if model.solver == Solver::SymplecticEuler { Features::NONE } else { Features::IMPLICIT };
+    let def = model.limits.fit(&ClothDef {
         rate_hz: case.rate_hz,
         substeps: case.substeps,
         density_kg_m2: case.density_kg_m2,
@@ -146,9 +273,16 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
         inertia_radius_m: if setting.has_inertia() { INERTIA_RADIUS * case.size_m[0].max(case.size_m[1]) } else { 0.0 },
         inertia_max: INERTIA_MAX,
         hinge_rigidity_n_m: case.hinge_rigidity_n_m,
+        solver: model.solver,
+        cg_iterations: model.cg_iterations,
+        features: memory,
         ..ClothDef::default()
-    };
+    });
     let mut def = case.scene.fit(&def, shape.0, shape.1);
+    if let Setting::Limited(_, limits) = setting {
+        def.features = Features(def.features.0 | Features::LEVELS.0);
+        (def.strain_limit, def.tether_slack) = (*limits, *limits);
+    }
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let field = setting.field(case);
     if let Setting::Reference(_) = setting {
@@ -183,9 +317,10 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
         case.scene.drive(&mut cloth, f64::from(frame + 1) / f64::from(case.rate_hz), 0)?;
         let start = ThreadTime::now();
         finite &= !cloth.step()?.contains(taut::StepFlags::NON_FINITE);
-        cpu += start.elapsed();
+        let frame = Frame { index: frame, of: frames, cpu: start.elapsed() };
+        cpu += frame.cpu;
         peak = peak.max(cloth.strain().largest);
-        progress((frame + 1) as f32 / frames as f32);
+        look(&cloth, frame);
     }
     let particles = grid.particles();
     let mass = f64::from(cloth.particle_mass_kg());
@@ -198,6 +333,7 @@ pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Res
         cut_fraction: f64::from(budget.cut_fraction),
         inertia_added: f64::from(budget.inertia_added),
         ns_per_particle_step: cpu.as_secs_f64() * 1e9 / steps,
+        memory_bytes: size_of::<f32>() * Cloth::memory(&grid, &def)?,
         finite,
         rms_speed_m_s: (2.0 * cloth.kinetic_energy_j() / (mass * particles as f64)).sqrt(),
         state_hash: format!("{:016x}", cloth.state_hash()),

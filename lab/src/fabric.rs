@@ -181,6 +181,11 @@ pub fn sample(seed: u64, index: u32) -> (Fabric, String) {
         words.push(kind.words[pick(7, kind.words.len())].to_string());
     }
     words.push(name.to_string());
+    // two names of one kind are that kind and not twice of it
+    let second = kind.names[pick(12, kind.names.len())];
+    if draw(13) < 0.25 && second != name {
+        words.push(second.to_string());
+    }
     if draw(8) < 0.25 {
         words.push(kind.words[pick(9, kind.words.len())].to_string());
     }

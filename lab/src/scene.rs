@@ -97,8 +97,10 @@ impl Scene {
             }
             Scene::Drape => vec![],
             Scene::Flag => (0..rows).map(|row| row * columns).collect(),
+            // Hinges are clamped halfway between the last particles that are held and those before, so half a cell more is
+            // held all round: then the overhang begins at the pedestal's edge.
             Scene::Cusick => (0..rows * columns)
-                .filter(|i| from_middle(i / columns, i % columns, rows, columns) <= PEDESTAL)
+                .filter(|i| from_middle(i / columns, i % columns, rows, columns) <= clamped(rows, columns))
                 .collect(),
         }
     }
@@ -158,13 +160,31 @@ impl Scene {
         }
     }
 
+    /// Whether a particle of a grid is part of the sheet.
+    pub fn has(self, particle: usize, rows: usize, columns: usize) -> bool {
+        self != Scene::Cusick || from_middle(particle / columns, particle % columns, rows, columns) <= 1.0
+    }
+
+    /// What a sheet of a width (along u) and height lies on, if anything.
+    pub fn solid(self, width_m: f32, height_m: f32) -> Option<Solid> {
+        let middle = |y: f32| [0.5 * width_m, y, 0.5 * height_m];
+        match self {
+            Scene::Drape => {
+                let radius_m = SPHERE * width_m;
+                Some(Solid::Sphere { middle_m: middle(-radius_m - ABOVE * width_m), radius_m })
+            }
+            Scene::Cusick => Some(Solid::Pedestal { top_m: middle(0.0), radius_m: 0.5 * PEDESTAL * width_m }),
+            _ => None,
+        }
+    }
+
     /// Puts a cloth that was made from [`Scene::fit`] at the start of the scene, with its pins, mask, colliders and wind.
     pub fn set_up(self, cloth: &mut Cloth<'_>, seed: u64) -> Result<(), Error> {
         let g = *cloth.grid();
         let (m, n) = (g.rows(), g.columns());
         cloth.reset();
         if self == Scene::Cusick {
-            let there = |i: usize| u8::from(from_middle(i / n, i % n, m, n) <= 1.0);
+            let there = |i: usize| u8::from(self.has(i, m, n));
             cloth.set_mask(&(0..m * n).map(there).collect::<Vec<u8>>())?;
         }
         for i in 0..m * n {
@@ -174,25 +194,25 @@ impl Scene {
             cloth.pin(p)?;
         }
         let (width, height) = (g.def().width_m, g.def().height_m);
-        let middle =
-            |y: f32| cloth.def().origin_m.iter().zip([0.5 * width, y, 0.5 * height]).map(|(o, x)| o + f64::from(x));
-        match self {
-            Scene::Drape => {
-                let radius_m = SPHERE * width;
-                let at = Vector3::from_iterator(middle(-radius_m - ABOVE * width));
-                let sphere = ColliderDef::new(Shape::Sphere { radius_m }, Pose::at(at));
+        let place = |local: [f32; 3]| {
+            Vector3::from_iterator(cloth.def().origin_m.iter().zip(local).map(|(o, x)| o + f64::from(x)))
+        };
+        match self.solid(width, height) {
+            Some(Solid::Sphere { middle_m, radius_m }) => {
+                let sphere = ColliderDef::new(Shape::Sphere { radius_m }, Pose::at(place(middle_m)));
                 cloth.add_collider(&ColliderDef { friction: 0.6, ..sphere })?;
             }
-            Scene::Cusick => {
+            Some(Solid::Pedestal { top_m, radius_m }) => {
                 // the pedestal is a cylinder; a capsule is one from its radius on downwards
-                let radius = 0.5 * PEDESTAL * width;
-                let ends_m = [[0.0, -radius, 0.0], [0.0, -4.0 * width, 0.0]];
-                let at = Vector3::from_iterator(middle(0.0));
-                let pedestal = ColliderDef::new(Shape::Capsule { ends_m, radii_m: [radius; 2] }, Pose::at(at));
+                let ends_m = [[0.0, -radius_m, 0.0], [0.0, -4.0 * width, 0.0]];
+                let pedestal =
+                    ColliderDef::new(Shape::Capsule { ends_m, radii_m: [radius_m; 2] }, Pose::at(place(top_m)));
                 cloth.add_collider(&ColliderDef { thickness_m: 0.0, ..pedestal })?;
             }
-            Scene::Flag => cloth.set_air(&Air { wind_m_s: [WIND_M_S, 0.0, 0.0], gust: GUST, ..Air::default() })?,
-            _ => {}
+            None => {}
+        }
+        if self == Scene::Flag {
+            cloth.set_air(&Air { wind_m_s: [WIND_M_S, 0.0, 0.0], gust: GUST, ..Air::default() })?;
         }
         Ok(())
     }
@@ -217,6 +237,30 @@ impl Scene {
         let (u, v) = ((particle % n) as f32 / (n - 1) as f32, (particle / n) as f32 / (m - 1) as f32);
         self.start(u, v, g.def().width_m, g.def().height_m, seed)
     }
+}
+
+/// What a sheet lies on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid {
+    /// A ball.
+    Sphere {
+        /// Its middle in m.
+        middle_m: [f32; 3],
+        /// Its radius in m.
+        radius_m: f32,
+    },
+    /// An upright cylinder, endless downwards.
+    Pedestal {
+        /// The middle of its top in m.
+        top_m: [f32; 3],
+        /// Its radius in m.
+        radius_m: f32,
+    },
+}
+
+/// Distance from the middle up to which the particles of [`Scene::Cusick`] are held, as a share of half its side.
+fn clamped(rows: usize, columns: usize) -> f32 {
+    PEDESTAL + 1.0 / (rows.min(columns) - 1) as f32
 }
 
 /// Distance of a particle from the middle of the sheet as a share of half its side.

@@ -4,7 +4,9 @@ use burn::Tensor;
 use burn::module::Module;
 use burn::tensor::{Device, TensorData};
 use taut_train::nets::init::SplitMix64;
-use taut_train::nets::{Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput, normalise};
+use taut_train::nets::{
+    Discriminator, DiscriminatorConfig, Generator, GeneratorConfig, GeneratorOutput, head_input, normalise,
+};
 
 fn random<const D: usize>(shape: [usize; D], seed: u64, device: &Device) -> Tensor<D> {
     let mut s = SplitMix64::new(seed);
@@ -29,7 +31,7 @@ fn judge(d: &Discriminator, channels: usize, batch: usize, seed: u64, device: &D
 fn the_generator_gives_a_field_and_a_fabric_in_tanh_range() {
     let device = Device::flex();
     for width in [1, 4, 16] {
-        let g = GeneratorConfig { width }.init(3, &device).expect("width");
+        let g = GeneratorConfig { width, levels: true }.init(3, &device).expect("width");
         let out = generate(&g, 3, 1, &device);
         assert_eq!((out.field.dims(), out.fabric.dims()), ([3, 4, 32, 32], [3, 5]));
         for v in host(out.field).into_iter().chain(host(out.fabric)) {
@@ -52,8 +54,9 @@ const GENERATOR_PARAMETERS: usize = {
     let fourth = 3 * w * w * 9 + w + 4 * 3 * w;
     let fifth = (2 * w + 1) * w * 9 + w + 4 * 2 * w;
     let sixth = (w + 1) * 4 * 9 + 4 + 4 * w;
-    let fabric = 1024 * 5 + 5;
-    first + skip + second + third + fourth + fifth + sixth + fabric
+    let fabric = 2048 * 5 + 5;
+    let level = 2048 * 4 + 4;
+    first + skip + second + third + fourth + fifth + sixth + fabric + level
 };
 
 #[test]
@@ -72,28 +75,51 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 }
 
 #[test]
-fn the_fabric_hears_the_sum_of_the_words_and_the_field_only_where_it_points() {
+fn the_fabric_hears_the_sum_of_the_words_too_and_the_pattern_only_where_it_points() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 4 }.init(5, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: false }.init(5, &device).expect("width");
     let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
     let pins = random([1, 1, 32, 32], 2, &device).abs();
     let once = g.forward(words.clone(), noise.clone(), pins.clone());
-    let twice = g.forward(words.mul_scalar(2.0), noise, pins);
+    let twice = g.forward(words.clone().mul_scalar(2.0), noise, pins);
     for (a, b) in host(once.field).into_iter().zip(host(twice.field)) {
         assert!((a - b).abs() < 1e-5, "{a} {b}");
     }
-    // in front of tanh: head(2 x) = 2 head(x) - bias
-    let bias = host(g.fabric.bias.as_ref().expect("a bias").val());
-    for ((a, b), bias) in host(once.fabric).into_iter().zip(host(twice.fabric)).zip(bias) {
-        assert!((2.0 * a.atanh() - bias - b.atanh()).abs() < 1e-3, "{a} {b}");
+    // in front of tanh: head(2 x) - head(x) is what the sum adds
+    let part = g.fabric.weight.val().slice([1024..2048, 0..5]);
+    let added = host(words.matmul(part));
+    for ((a, b), added) in host(once.fabric).into_iter().zip(host(twice.fabric)).zip(added) {
+        assert!((b.atanh() - a.atanh() - added).abs() < 1e-3, "{a} {b}");
     }
+}
+
+#[test]
+fn the_level_of_the_field_hears_the_words_and_their_sum() {
+    let device = Device::flex();
+    let with = GeneratorConfig { width: 4, levels: true }.init(5, &device).expect("width");
+    let without = without_levels(&with);
+    let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
+    let pins = random([1, 1, 32, 32], 2, &device).abs();
+    let pattern = host(without.forward(words.clone(), noise.clone(), pins.clone()).field);
+    let heard = head_input(normalise(words.clone()), words.clone());
+    assert_eq!(heard.dims(), [1, 2048]);
+    let level = host(with.level.as_ref().expect("levels").forward(heard));
+    let field = host(with.forward(words, noise, pins).field);
+    for (i, (p, f)) in pattern.iter().zip(&field).enumerate() {
+        let sum = (p.atanh() + level[i / 1024]).tanh();
+        assert!((sum - f).abs() < 1e-4, "{i}: {sum} {f}");
+    }
+}
+
+fn without_levels(g: &Generator) -> Generator {
+    Generator { level: None, ..g.clone() }
 }
 
 #[test]
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {
-        let g = GeneratorConfig { width: 4 }.init(seed, &device).expect("width");
+        let g = GeneratorConfig { width: 4, levels: true }.init(seed, &device).expect("width");
         let d = DiscriminatorConfig { width: 4, ..Default::default() }.init(seed, &device).expect("width");
         (host(generate(&g, 2, 8, &device).field), host(judge(&d, 1, 2, 8, &device)))
     };
@@ -138,7 +164,7 @@ fn only_a_conditional_discriminator_hears_the_words_and_it_weighs_them_against_t
 #[test]
 fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
     let statistics = |g: &Generator| {
         let g = g.valid();
         (host(g.second.norm.running_mean.value()), host(g.fifth.norm.running_var.value()))
@@ -174,7 +200,7 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
 #[test]
 fn every_weight_of_both_networks_gets_a_gradient() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
     let out = generate(&g, 4, 1, &device);
     let loss = out.field.square().mean() + out.fabric.square().mean() + g.squared_weights().mul_scalar(1e-4);
     let grads = loss.backward();
@@ -204,12 +230,13 @@ fn every_weight_of_both_networks_gets_a_gradient() {
 #[test]
 fn the_sum_of_squares_counts_kernels_and_matrices() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 1 }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 1, levels: true }.init(2, &device).expect("width");
     let mut expected = 0.0f64;
     let mut add = |v: Vec<f32>| expected += v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
     add(host(g.first.weight.val()));
     add(host(g.skip.weight.val()));
     add(host(g.fabric.weight.val()));
+    add(host(g.level.as_ref().expect("levels").weight.val()));
     for l in [&g.second, &g.third, &g.fourth, &g.fifth, &g.sixth] {
         add(host(l.deconvolution.weight.val()));
     }

@@ -3,6 +3,9 @@
 mod bad_input;
 mod correct;
 mod drape;
+mod front;
 mod info;
 mod interrupt;
+mod measure;
+mod plan;
 mod run;

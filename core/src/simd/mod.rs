@@ -32,6 +32,7 @@
 mod scalar;
 #[cfg(test)]
 mod tests;
+mod three;
 
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -41,6 +42,8 @@ mod x86;
 use core::ops::{Add, Div, Mul, Sub};
 
 use crate::width::{Supported, Width};
+
+pub(crate) use three::{Three, load};
 
 /// Some f32 that are worked on at once; each operation is that of the single number in each lane.
 pub(crate) trait Vector:
@@ -80,6 +83,9 @@ pub(crate) trait Vector:
 
     /// Whether in any lane the number is above that of `other`.
     fn any_above(self, other: Self) -> bool;
+
+    /// In each lane `then` where the number is above that of `other`, else `otherwise`, also where they do not compare.
+    fn above(self, other: Self, then: Self, otherwise: Self) -> Self;
 
     /// The lanes one place on in a row of vectors: the last of `before`, then all but the last of this one.
     fn next1(self, before: Self) -> Self;

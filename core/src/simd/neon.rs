@@ -80,6 +80,12 @@ impl Vector for F32x4 {
     }
 
     #[inline(always)]
+    fn above(self, other: F32x4, then: F32x4, otherwise: F32x4) -> F32x4 {
+        // SAFETY: as above.
+        F32x4(unsafe { vbslq_f32(vcgtq_f32(self.0, other.0), then.0, otherwise.0) })
+    }
+
+    #[inline(always)]
     fn next1(self, before: F32x4) -> F32x4 {
         // SAFETY: as above.
         F32x4(unsafe { vextq_f32::<3>(before.0, self.0) })

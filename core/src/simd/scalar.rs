@@ -72,6 +72,11 @@ impl Vector for Scalar {
     }
 
     #[inline(always)]
+    fn above(self, other: Scalar, then: Scalar, otherwise: Scalar) -> Scalar {
+        if self.0 > other.0 { then } else { otherwise }
+    }
+
+    #[inline(always)]
     fn next1(self, before: Scalar) -> Scalar {
         before
     }

@@ -31,6 +31,9 @@ fn pairs() -> Vec<(f32, f32)> {
     all
 }
 
+/// What is chosen where the first number is not above the second.
+const CHOSEN: f32 = -0.0;
+
 /// What the operations answer, one operation after the other.
 struct Operations<'a> {
     a: &'a [f32],
@@ -44,7 +47,7 @@ impl Pass for Operations<'_> {
     fn run<V: Vector>(self, zero: V) -> Vec<Vec<f32>> {
         let mut results: Vec<Vec<f32>> = Vec::new();
         let n = self.a.len();
-        for operation in 0..9 {
+        for operation in 0..10 {
             let mut out = std::vec![0.0; n];
             for at in (0..n).step_by(V::LANES) {
                 let (a, b) = (zero.read(self.a, at), zero.read(self.b, at));
@@ -57,6 +60,7 @@ impl Pass for Operations<'_> {
                     5 => a.max(b),
                     6 => a.min(b),
                     7 => zero.all(self.a[at]),
+                    8 => a.above(b, a, zero.all(CHOSEN)),
                     _ => a,
                 };
                 result.write(&mut out, at);
@@ -113,7 +117,9 @@ fn each_operation_has_the_bits_of_the_scalar_one() {
         let lanes = width.get().lanes();
         for i in 0..a.len() {
             assert!(same(results[7][i], a[i / lanes * lanes]), "one number in all lanes");
-            assert_eq!(results[8][i].to_bits(), a[i].to_bits(), "read and written as it is");
+            let chosen = if a[i] > b[i] { a[i] } else { CHOSEN };
+            assert_eq!(results[8][i].to_bits(), chosen.to_bits(), "{:e} above {:e}", a[i], b[i]);
+            assert_eq!(results[9][i].to_bits(), a[i].to_bits(), "read and written as it is");
         }
     }
 }

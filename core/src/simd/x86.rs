@@ -68,7 +68,12 @@ macro_rules! vector {
 
             #[inline(always)]
             fn any_above(self, other: $name) -> bool {
-                self.above(other)
+                self.is_above(other)
+            }
+
+            #[inline(always)]
+            fn above(self, other: $name, then: $name, otherwise: $name) -> $name {
+                self.choose(other, then, otherwise)
             }
 
             #[inline(always)]
@@ -114,9 +119,18 @@ vector! {
 
 impl F32x4 {
     #[inline(always)]
-    fn above(self, other: F32x4) -> bool {
+    fn is_above(self, other: F32x4) -> bool {
         // SAFETY: a value exists, so the instructions do.
         unsafe { _mm_movemask_ps(_mm_cmpgt_ps(self.0, other.0)) != 0 }
+    }
+
+    #[inline(always)]
+    fn choose(self, other: F32x4, then: F32x4, otherwise: F32x4) -> F32x4 {
+        // SAFETY: as above.
+        unsafe {
+            let above = _mm_cmpgt_ps(self.0, other.0);
+            F32x4(_mm_or_ps(_mm_and_ps(above, then.0), _mm_andnot_ps(above, otherwise.0)))
+        }
     }
 
     #[inline(always)]
@@ -138,12 +152,21 @@ impl F32x4 {
 
 impl F32x8 {
     #[inline(always)]
-    fn above(self, other: F32x8) -> bool {
+    fn is_above(self, other: F32x8) -> bool {
         // SAFETY: a value exists, so the instructions do.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(self.0, other.0)) != 0 }
     }
 
     /// The upper half of `before`, then the lower half of this one.
+    #[inline(always)]
+    fn choose(self, other: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
+        // SAFETY: as above.
+        unsafe {
+            let above = _mm256_cmp_ps::<_CMP_GT_OQ>(self.0, other.0);
+            F32x8(_mm256_blendv_ps(otherwise.0, then.0, above))
+        }
+    }
+
     #[inline(always)]
     fn halves(self, before: F32x8) -> __m256 {
         // SAFETY: as above.
@@ -169,9 +192,18 @@ impl F32x8 {
 
 impl F32x16 {
     #[inline(always)]
-    fn above(self, other: F32x16) -> bool {
+    fn is_above(self, other: F32x16) -> bool {
         // SAFETY: a value exists, so the instructions do.
         unsafe { _mm512_cmp_ps_mask::<_CMP_GT_OQ>(self.0, other.0) != 0 }
+    }
+
+    #[inline(always)]
+    fn choose(self, other: F32x16, then: F32x16, otherwise: F32x16) -> F32x16 {
+        // SAFETY: as above.
+        unsafe {
+            let above = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(self.0, other.0);
+            F32x16(_mm512_mask_blend_ps(above, otherwise.0, then.0))
+        }
     }
 
     #[inline(always)]

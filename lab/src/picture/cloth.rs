@@ -63,6 +63,21 @@ pub fn draw(raster: &mut Raster, camera: &Camera, grid: &Grid, style: &Style) {
                 let screen = camera.project(grid.positions()[particle]);
                 Vertex { screen, values: [x, y, z, dc as f32, dr as f32, u, v] }
             });
+            let there = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(dr, dc)| grid.has(row + dr, column + dc));
+            match there.iter().filter(|there| **there).count() {
+                4 => {}
+                // a cell with three corners is a triangle
+                3 => {
+                    let shade = |&[x, y, z, s, t, u, v]: &[f32; 7]| {
+                        let at = Spot { s: s.clamp(0.0, 1.0), t: t.clamp(0.0, 1.0), strain: u.max(v) };
+                        weave.shade(&cell, &at, fabric, lights.at([x, y, z]))
+                    };
+                    let missing = there.iter().position(|there| !there).unwrap_or(0);
+                    raster.triangle([1, 2, 3].map(|i| &corners[(missing + i) % 4]), shade);
+                    continue;
+                }
+                _ => continue,
+            }
             let middle = Vertex {
                 screen: camera.project(grid.cell_center(row, column)),
                 values: std::array::from_fn(|i| corners.iter().map(|corner| corner.values[i]).sum::<f32>() * 0.25),
@@ -85,21 +100,21 @@ struct Spot {
 }
 
 /// The lamps, turned with the camera: every panel is lit alike.
-struct Lights {
+pub(super) struct Lights {
     toward: Vec3,
     up: Vec3,
     lamps: [(Vec3, Linear); 2],
 }
 
 impl Lights {
-    fn new(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera) -> Self {
         let lamps =
             LAMPS.map(|(local, color)| (normalized(camera.direction(local)).unwrap_or(camera.view().toward), color));
         Self { toward: camera.view().toward, up: camera.view().up, lamps }
     }
 
     /// Light that reaches the viewer from a white surface with this normal (need not be of unit length).
-    fn at(&self, normal: Vec3) -> Linear {
+    pub fn at(&self, normal: Vec3) -> Linear {
         let normal = normalized(normal).unwrap_or(self.toward);
         let facing = dot(normal, self.toward);
         let normal = if facing < 0.0 { scale(normal, -1.0) } else { normal };

@@ -21,7 +21,7 @@ fn smallest_frame(panels: &[Panel], view: &View) -> Option<(Frame, f32)> {
     panels
         .iter()
         .filter(|panel| panel.grid.is_finite())
-        .filter_map(|panel| Some((Frame::around(view, panel.grid.positions())?, panel.grid.diagonal_m())))
+        .filter_map(|panel| Some((Frame::around(view, &panel.grid.present())?, panel.grid.diagonal_m())))
         // Finite positions may lie so far out that their projections are not.
         .filter(|(frame, _)| frame.size().iter().all(|side| side.is_finite()))
         .min_by(|(a, _), (b, _)| {
@@ -39,7 +39,7 @@ pub fn contents(panels: &[Panel], view: &View) -> Vec<Content> {
             if !panel.grid.is_finite() {
                 return Content::NotFinite;
             }
-            let near = smallest.zip(Frame::around(view, panel.grid.positions())).is_some_and(|((base, _), frame)| {
+            let near = smallest.zip(Frame::around(view, &panel.grid.present())).is_some_and(|((base, _), frame)| {
                 let limit = base.grown(OFF_SCALE * panel.grid.diagonal_m());
                 base.size()[0].max(base.size()[1]) <= OFF_SCALE * panel.grid.diagonal_m()
                     && frame.size().iter().all(|side| side.is_finite())
@@ -61,7 +61,7 @@ pub fn shared_frame(panels: &[Panel], contents: &[Content], view: &View) -> Fram
         .iter()
         .zip(contents)
         .filter(|(_, content)| matches!(content, Content::Cloth))
-        .filter_map(|(panel, _)| Frame::around(view, panel.grid.positions()))
+        .filter_map(|(panel, _)| Frame::around(view, &panel.grid.present()))
         .map(|frame| frame.clamped(&limit))
         .reduce(|a, b| a.union(&b))
         .unwrap_or(unit)

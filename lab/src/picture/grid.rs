@@ -2,6 +2,7 @@
 
 use super::error::PictureError;
 use super::vector::{Vec3, add, cross, length, normalized, scale, sub};
+use crate::scene::Solid;
 
 /// Most rows and columns of a grid.
 const MAX_SIDE: usize = 4096;
@@ -17,6 +18,9 @@ pub struct Grid {
     width_m: f32,
     height_m: f32,
     pins: Vec<usize>,
+    /// Whether each particle is there; empty where all are.
+    present: Vec<bool>,
+    solid: Option<Solid>,
 }
 
 impl Grid {
@@ -41,7 +45,16 @@ impl Grid {
         if ![width_m, height_m].iter().all(|side| side.is_finite() && *side > 0.0) {
             return Err(PictureError::RestSize { width_m, height_m });
         }
-        Ok(Self { positions: positions.to_vec(), rows, columns, width_m, height_m, pins: Vec::new() })
+        Ok(Self {
+            positions: positions.to_vec(),
+            rows,
+            columns,
+            width_m,
+            height_m,
+            pins: Vec::new(),
+            present: Vec::new(),
+            solid: None,
+        })
     }
 
     /// The same grid with these particles marked as pinned.
@@ -55,6 +68,42 @@ impl Grid {
         }
         self.pins = pins.to_vec();
         Ok(self)
+    }
+
+    /// The same grid without the particles for which `present` is false: neither they nor what hangs on them is drawn.
+    ///
+    /// # Errors
+    /// Another number of answers than particles.
+    pub fn with_mask(mut self, present: &[bool]) -> Result<Self, PictureError> {
+        if present.len() != self.positions.len() {
+            let (rows, columns) = (self.rows, self.columns);
+            return Err(PictureError::Positions { rows, columns, given: present.len() });
+        }
+        self.present = present.to_vec();
+        Ok(self)
+    }
+
+    /// The same grid with what it lies on.
+    #[must_use]
+    pub fn with_solid(mut self, solid: Option<Solid>) -> Self {
+        self.solid = solid;
+        self
+    }
+
+    /// What it lies on.
+    pub fn solid(&self) -> Option<Solid> {
+        self.solid
+    }
+
+    /// Whether a particle is there.
+    pub fn has(&self, row: usize, column: usize) -> bool {
+        self.present.get(row * self.columns + column).copied().unwrap_or(true)
+    }
+
+    /// Positions of the particles that are there.
+    pub fn present(&self) -> Vec<Vec3> {
+        let there = |i: &usize| self.present.get(*i).copied().unwrap_or(true);
+        (0..self.positions.len()).filter(there).map(|i| self.positions[i]).collect()
     }
 
     /// Positions, metres, row by row.
@@ -92,18 +141,24 @@ impl Grid {
         self.width_m.hypot(self.height_m)
     }
 
-    /// True when every coordinate is a finite number.
+    /// True when every coordinate of the particles that are there is a finite number.
     pub fn is_finite(&self) -> bool {
-        self.positions.iter().flatten().all(|v| v.is_finite())
+        self.present().iter().flatten().all(|v| v.is_finite())
     }
 
-    /// Strain (1 = 100 %, negative when compressed) of the weft edge from `column` to the next one.
+    /// Strain (1 = 100 %, negative when compressed) of the weft edge from `column` to the next one; 0 where it is not there.
     pub fn strain_u(&self, row: usize, column: usize) -> f32 {
+        if !self.has(row, column) || !self.has(row, column + 1) {
+            return 0.0;
+        }
         length(sub(self.at(row, column + 1), self.at(row, column))) / self.rest_m()[0] - 1.0
     }
 
-    /// Strain (1 = 100 %, negative when compressed) of the warp edge from `row` to the next one.
+    /// Strain (1 = 100 %, negative when compressed) of the warp edge from `row` to the next one; 0 where it is not there.
     pub fn strain_v(&self, row: usize, column: usize) -> f32 {
+        if !self.has(row, column) || !self.has(row + 1, column) {
+            return 0.0;
+        }
         length(sub(self.at(row + 1, column), self.at(row, column))) / self.rest_m()[1] - 1.0
     }
 
@@ -145,10 +200,12 @@ impl Grid {
         (0..self.positions.len())
             .map(|particle| {
                 let (row, column) = (particle / self.columns, particle % self.columns);
-                let right = self.at(row, (column + 1).min(last_column));
-                let left = self.at(row, column.saturating_sub(1));
-                let below = self.at((row + 1).min(last_row), column);
-                let above = self.at(row.saturating_sub(1), column);
+                // a neighbour that is not there is the particle itself
+                let near = |r: usize, c: usize| if self.has(r, c) { self.at(r, c) } else { self.at(row, column) };
+                let right = near(row, (column + 1).min(last_column));
+                let left = near(row, column.saturating_sub(1));
+                let below = near((row + 1).min(last_row), column);
+                let above = near(row.saturating_sub(1), column);
                 normalized(cross(sub(right, left), sub(above, below))).unwrap_or([0.0, 0.0, 1.0])
             })
             .collect()
@@ -184,6 +241,21 @@ mod tests {
         }
         let grid = Grid::new(&positions, 3, 4, 0.3, 0.4).expect("a grid");
         assert!(message(grid.with_pins(&[0, 12])).contains("pin 12"));
+    }
+
+    #[test]
+    fn absent_particles_count_for_nothing() {
+        let mut positions = flat(1.1);
+        positions[0] = [f32::NAN; 3];
+        let mut present = [true; 12];
+        present[0] = false;
+        let grid = Grid::new(&positions, 3, 4, 0.3, 0.4).and_then(|g| g.with_mask(&present)).expect("a grid");
+        assert!(grid.is_finite() && grid.present().len() == 11 && !grid.has(0, 0));
+        assert_eq!((grid.strain_u(0, 0), grid.strain_v(0, 0)), (0.0, 0.0));
+        assert!((grid.strain_u(0, 1) - 0.1).abs() < 1e-5);
+        assert!(grid.normals().iter().skip(1).all(|n| (n[2] - 1.0).abs() < 1e-6));
+        let short = Grid::new(&positions, 3, 4, 0.3, 0.4).and_then(|g| g.with_mask(&[true]));
+        assert!(short.is_err());
     }
 
     #[test]

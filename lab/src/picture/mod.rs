@@ -17,6 +17,7 @@ mod raster;
 mod save;
 mod shadow;
 mod sheet;
+mod solid;
 mod text;
 mod vector;
 
@@ -24,5 +25,6 @@ pub use cloth::Style;
 pub use color::{Ramp, STRAIN_CEILING, STRAIN_FLOOR, Srgb};
 pub use error::PictureError;
 pub use grid::Grid;
+pub(crate) use raster::{Raster, Vertex};
 pub use save::{encode_png, save_png};
 pub use sheet::{MAX_PANELS, Panel, Sheet};

@@ -17,7 +17,9 @@ use super::layout::{FOOTER_LINE, Layout, MARGIN};
 use super::legend::{self, INK, Keys, SOFT_INK};
 use super::raster::Raster;
 use super::save::save_png;
+use super::solid;
 use super::text::{Align, Face, write};
+use crate::scene::Solid;
 
 /// Most panels of a sheet.
 pub const MAX_PANELS: usize = 12;
@@ -65,6 +67,7 @@ pub struct Sheet {
     pub(super) panels: Vec<Panel>,
     outline_of: Option<usize>,
     style: Style,
+    pitch: f32,
 }
 
 impl Sheet {
@@ -77,7 +80,15 @@ impl Sheet {
             panels: Vec::new(),
             outline_of: None,
             style: Style::default(),
+            pitch: PITCH,
         }
+    }
+
+    /// Sets how far above the horizon the viewer stands, in degrees below 90; 10 where nothing is said.
+    #[must_use]
+    pub fn seen_from(mut self, degrees: f32) -> Self {
+        self.pitch = degrees.clamp(-89.0, 89.0);
+        self
     }
 
     /// Sets the line below the title, such as the scene and the step.
@@ -126,7 +137,7 @@ impl Sheet {
         if self.panels.len() > MAX_PANELS {
             return Err(PictureError::TooManyPanels { panels: self.panels.len() });
         }
-        let view = View::new(YAW, PITCH);
+        let view = View::new(YAW, self.pitch);
         let contents: Vec<Content> = contents(&self.panels, &view);
         let frame = shared_frame(&self.panels, &contents, &view);
         let drawn = contents.iter().any(|content| matches!(content, Content::Cloth));
@@ -142,7 +153,7 @@ impl Sheet {
         keys.pixels_per_metre = drawn.then(|| camera.pixels_per_metre());
 
         let outlines = outlined
-            .map(|reference| contour::outlines(&self.shaded(&camera, window, &self.panels[reference])))
+            .map(|reference| contour::outlines(&self.shaded(&camera, window, &self.panels[reference], None)))
             .unwrap_or_default();
         let mut canvas = Canvas::new(layout.width as u32, layout.height as u32, PAPER);
         self.draw_header(&mut canvas, &layout);
@@ -151,7 +162,7 @@ impl Sheet {
             let window = layout.window(index);
             match content {
                 Content::Cloth => {
-                    card::lay_cloth(&mut canvas, window, &self.shaded(&camera, window, panel));
+                    card::lay_cloth(&mut canvas, window, &self.shaded(&camera, window, panel, panel.grid.solid()));
                     if outlined.is_some_and(|reference| reference != index) {
                         card::draw_outlines(&mut canvas, window, &outlines);
                     }
@@ -178,9 +189,12 @@ impl Sheet {
         save_png(&self.render()?, path)
     }
 
-    /// A panel's cloth, drawn through a window of this size.
-    fn shaded(&self, camera: &Camera, window: Area, panel: &Panel) -> Raster {
+    /// A panel's cloth, drawn through a window of this size, and what it lies on.
+    fn shaded(&self, camera: &Camera, window: Area, panel: &Panel, solid: Option<Solid>) -> Raster {
         let mut raster = Raster::new(window.width as usize, window.height as usize);
+        if let Some(solid) = solid {
+            solid::draw(&mut raster, camera, &solid);
+        }
         cloth::draw(&mut raster, camera, &panel.grid, &self.style);
         raster
     }

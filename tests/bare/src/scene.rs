@@ -41,7 +41,7 @@ pub const SCENES: [Scene; 6] = [
     // all families, a graded field, the default budget and clamps
     scene("hang2", What::Hang2, [0x7a44_9fca_3728_29fa, 0x62c1_5e2a_b4eb_f2ec]),
     // the structural springs alone, nothing clamped, hardly damped
-    scene("edge", What::Edge, [0x1107_aa30_5fa3_6789, 0x9d05_698e_d91a_7020]),
+    scene("edge", What::Edge, [0xd053_d72c_387b_eb0e, 0x49c9_9660_1adb_1cc1]),
     // oblong cells, structural and shear, no axis is up
     scene("hang1", What::Hang1, [0x8f79_8f6e_94ce_9f8b, 0x2634_ef15_1134_7c45]),
     // all families with the inertia field, which moves with the pins: one is freed on the way

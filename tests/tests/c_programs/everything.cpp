@@ -129,6 +129,14 @@ int surroundings(const taut::Grid &grid)
     DONE(cloth.set_targets({0.0, 0.0, 0.0}, particles, skin, &skin[0][3], sizeof skin[0]));
     DONE(cloth.move_targets({0.0, 0.0, 0.01}, particles, skin, nullptr, sizeof skin[0]));
 
+    taut_grid_def planned = taut::grid_def_default();
+    taut_plan_def wish = taut::plan_def_default();
+    taut_settings settings;
+    DONE(taut::plan(planned, wish, settings));
+    REQUIRE(settings.meets == 1 && settings.strain <= wish.tolerance && settings.substeps >= 1);
+    wish.budget_ns = 1.0f;
+    REQUIRE(taut::plan(planned, wish, settings) == TAUT_ERROR_NO_PLAN);
+
     DONE(cloth.pin(0));
     DONE(cloth.pin(side - 1));
     uint32_t flags, asleep = 1;
@@ -159,6 +167,13 @@ int surroundings(const taut::Grid &grid)
     DONE(read.is_asleep(asleep));
     REQUIRE(asleep == 1 && (flags & TAUT_STEP_ASLEEP) != 0);
     DONE(cloth.wake());
+    uint32_t widest, has;
+    DONE(read.width(widest));
+    DONE(taut::width_supported(static_cast<taut_width>(widest), has));
+    REQUIRE(has == 1);
+    DONE(cloth.set_width(TAUT_WIDTH_SCALAR));
+    DONE(read.width(widest));
+    REQUIRE(widest == TAUT_WIDTH_SCALAR);
     DONE(read.is_asleep(asleep));
     REQUIRE(asleep == 0);
     return 0;
@@ -220,6 +235,7 @@ int run(const void *file, size_t size)
     REQUIRE(pins == 2);
     taut_budget_report report;
     DONE(cloth.budget(report));
+    DONE(cloth.predict_stretch(report));
     DONE(cloth.set_velocity(30, {0.0f, 0.0f, 0.1f}));
     DONE(cloth.add_force(30, {0.0f, 0.0f, 0.01f}));
     DONE(cloth.set_position(31, {1.0f, -0.45f, 0.01f}));

@@ -64,4 +64,6 @@ fn the_cape_stays_on_the_shoulders() {
     assert_eq!(lines[0], "690 triangles, 16 pins moved in each of 480 frames");
     let stretch: f64 = lines[1].strip_prefix("largest stretch ").unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(stretch > 0.5 && stretch < 10.0, "{stretch} %");
+    let touches: u32 = lines[2].split(' ').next().unwrap().parse().unwrap();
+    assert!(touches > 200, "{}", lines[2]);
 }

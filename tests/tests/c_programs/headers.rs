@@ -58,10 +58,12 @@ fn the_headers_are_clean_in_every_standard() {
     for compiler in Language::C11.compilers() {
         for standard in ["-std=c99", "-std=gnu2x"] {
             clean(compiler, &["-xc", standard], "taut.h");
+            clean(compiler, &["-xc", standard], "taut_generator.h");
         }
     }
     for compiler in Language::Cpp17.compilers() {
         clean(compiler, &["-xc++", "-std=c++11"], "taut.h");
+        clean(compiler, &["-xc++", "-std=c++11"], "taut_generator.h");
         for standard in ["-std=c++17", "-std=c++20"] {
             clean(compiler, &["-xc++", standard], "taut.hpp");
         }
@@ -84,6 +86,7 @@ fn the_headers_are_clean_for_windows() {
         {
             let c = [&target, "-ffreestanding", "-xc", "-std=c11", define];
             clean("clang", &c, "taut.h");
+            clean("clang", &c, "taut_generator.h");
             clean("clang", &[&target, "-ffreestanding", "-xc++", "-std=c++17", define], "taut.hpp");
             assert_eq!(count(&c, "taut.h", "(dllimport)"), import, "{target} {define}");
             assert_eq!(count(&c, "taut.h", "(dllexport)"), export, "{target} {define}");

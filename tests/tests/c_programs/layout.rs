@@ -84,6 +84,38 @@ fn structures_and_values_are_those_of_rust() {
         v_axis,
         reserved
     );
+    structure!(
+        t,
+        types::PlanDef,
+        "taut_plan_def",
+        size,
+        cookie,
+        hold,
+        tolerance,
+        budget_ns,
+        plain_ns,
+        rate_hz,
+        gravity_m_s2,
+        density_kg_m2,
+        stiffness_n_m
+    );
+    structure!(
+        t,
+        types::Plan,
+        "taut_settings",
+        solver,
+        substeps,
+        cg_iterations,
+        families,
+        features,
+        stiffness,
+        inertia_radius_m,
+        strain_limit,
+        tether_slack,
+        strain,
+        frame_ns,
+        meets
+    );
     structure!(t, types::Memory, "taut_memory", size, align);
     structure!(t, types::Counts, "taut_counts", rows, columns, particles, springs);
     structure!(t, types::Bounds, "taut_bounds", low_m, high_m);
@@ -95,7 +127,10 @@ fn structures_and_values_are_those_of_rust() {
         max_dt_s,
         cut_fraction,
         inertia_added,
-        hinge_fraction
+        hinge_fraction,
+        stretch,
+        stretch_bound,
+        flags
     );
     structure!(t, types::Pose, "taut_pose", position_m, rotation);
     structure!(
@@ -140,6 +175,13 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_SOLVER_SYMPLECTIC_EULER", taut::Solver::SymplecticEuler as i64),
         ("TAUT_SOLVER_IMPLICIT_EULER", taut::Solver::ImplicitEuler as i64),
         ("TAUT_SOLVER_BDF2", taut::Solver::Bdf2 as i64),
+        ("TAUT_HOLD_EDGE", taut::plan::Hold::Edge as i64),
+        ("TAUT_HOLD_HOOKS", taut::plan::Hold::Hooks as i64),
+        ("TAUT_HOLD_CORNERS", taut::plan::Hold::Corners as i64),
+        ("TAUT_HOLD_CORNER", taut::plan::Hold::Corner as i64),
+        ("TAUT_HOLD_LOOSE", taut::plan::Hold::Loose as i64),
+        ("TAUT_STIFFNESS_STIFFEST", taut::plan::PlanStiffness::Stiffest as i64),
+        ("TAUT_STIFFNESS_FABRIC", taut::plan::PlanStiffness::Fabric as i64),
         ("TAUT_SHAPE_SPHERE", types::ColliderShape::TAUT_SHAPE_SPHERE as i64),
         ("TAUT_SHAPE_CAPSULE", types::ColliderShape::TAUT_SHAPE_CAPSULE as i64),
         ("TAUT_SHAPE_PLANE", types::ColliderShape::TAUT_SHAPE_PLANE as i64),
@@ -163,11 +205,28 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_MAX_COLLIDERS", taut::MAX_COLLIDERS as i64),
         ("TAUT_STEP_NON_FINITE", i64::from(taut::StepFlags::NON_FINITE.0)),
         ("TAUT_STEP_ASLEEP", i64::from(taut::StepFlags::ASLEEP.0)),
+        ("TAUT_STEP_NON_FINITE_PIN", i64::from(taut::StepFlags::NON_FINITE_PIN.0)),
+        ("TAUT_STEP_NON_FINITE_AIR", i64::from(taut::StepFlags::NON_FINITE_AIR.0)),
+        ("TAUT_STEP_NON_FINITE_FORCE", i64::from(taut::StepFlags::NON_FINITE_FORCE.0)),
+        ("TAUT_STEP_NON_FINITE_COLLIDER", i64::from(taut::StepFlags::NON_FINITE_COLLIDER.0)),
+        ("TAUT_STEP_NON_FINITE_TARGET", i64::from(taut::StepFlags::NON_FINITE_TARGET.0)),
+        ("TAUT_STEP_NON_FINITE_STATE", i64::from(taut::StepFlags::NON_FINITE_STATE.0)),
+        ("TAUT_BUDGET_ABOVE_RANGE", i64::from(taut::BudgetFlags::ABOVE_RANGE.0)),
+        ("TAUT_BUDGET_STRETCH_UNKNOWN", i64::from(taut::BudgetFlags::STRETCH_UNKNOWN.0)),
+        ("TAUT_BUDGET_LIMIT_NOT_KEPT", i64::from(taut::BudgetFlags::LIMIT_NOT_KEPT.0)),
+        ("TAUT_WIDTH_SCALAR", taut::Width::Scalar as i64),
+        ("TAUT_WIDTH_SSE2", taut::Width::Sse2 as i64),
+        ("TAUT_WIDTH_AVX2", taut::Width::Avx2 as i64),
+        ("TAUT_WIDTH_AVX512", taut::Width::Avx512 as i64),
+        ("TAUT_WIDTH_NEON", taut::Width::Neon as i64),
         ("TAUT_MAX_SIDE", i64::from(Grid::MAX_SIDE)),
         ("(sizeof(taut_result))", 4),
         ("(sizeof(taut_budget))", 4),
         ("(sizeof(taut_solver))", 4),
         ("(sizeof(taut_shape))", 4),
+        ("(sizeof(taut_width))", 4),
+        ("(sizeof(taut_hold))", 4),
+        ("(sizeof(taut_stiffness))", 4),
     ] {
         writeln!(t, "_Static_assert({name} == {value}, \"{name}\");").unwrap();
     }
@@ -195,12 +254,22 @@ fn structures_and_values_are_those_of_rust() {
 fn defaults(t: &mut String) {
     let g = GridDef::default();
     writeln!(t, "    taut_grid_def g = taut_grid_def_default();").unwrap();
+    writeln!(t, "    taut_plan_def p = taut_plan_def_default();").unwrap();
     let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == {value:?}f);").unwrap();
     equal("(float)g.rows", g.rows.into());
     equal("(float)g.columns", g.columns.into());
     equal("g.width_m", g.width_m.into());
     equal("g.height_m", g.height_m.into());
     equal("(float)g.families", g.families.0.into());
+    let p = taut::plan::PlanDef::default();
+    equal("(float)p.hold", f64::from(p.hold as u32));
+    equal("p.tolerance", p.tolerance.into());
+    equal("p.plain_ns", p.plain_ns.into());
+    equal("p.rate_hz", p.rate_hz.into());
+    equal("p.gravity_m_s2", p.gravity_m_s2.into());
+    equal("p.density_kg_m2", p.density_kg_m2.into());
+    (0..4).for_each(|i| equal(&format!("p.stiffness_n_m[{i}]"), p.stiffness_n_per_m[i].into()));
+    writeln!(t, "    REQUIRE(p.budget_ns > 1e38f);").unwrap();
     writeln!(t, "    taut_cloth_def d = taut_cloth_def_default(NULL);").unwrap();
     let d = ClothDef::default();
     let mut equal = |what: &str, value: f64| writeln!(t, "    REQUIRE({what} == (float){value:?});").unwrap();

@@ -253,6 +253,7 @@ static int handles(void)
         REFUSED(a, taut_cloth_set_stiffness_field(c, 1, 2, 2, local));
         REFUSED(a, taut_cloth_load_stiffness(c, field[0], field_size[0], NULL));
         REFUSED(a, taut_cloth_budget(c, &report));
+        REFUSED(a, taut_cloth_predict_stretch(c, &report));
         REFUSED(a, taut_cloth_pin(c, 0));
         REFUSED(a, taut_cloth_pin_move(c, 0, world));
         REFUSED(a, taut_cloth_unpin(c, 0));
@@ -298,6 +299,7 @@ static int handles(void)
     return 0;
 }
 #include "refusals_meshes.h"
+#include "refusals_plan.h"
 static int arguments(void)
 {
     const double nan_world[3] = {0, (double)NAN, 0};
@@ -439,6 +441,7 @@ static int stiffness(void)
     k[35] = -1;
     REFUSED(TAUT_ERROR_NEGATIVE, taut_cloth_set_stiffness_field(cloth, 4, 3, 3, k));
     REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_budget(cloth, NULL));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_predict_stretch(cloth, NULL));
 
     // files: each mistake is found by both calls, and the fabric is not written
     taut_field info;
@@ -547,41 +550,7 @@ static int snapshots(void)
     return 0;
 }
 
-// A frame that ends with a number that is not finite is taken back, and says so. To get there: the tuned budget without the
-// speed limit and the damping that it needs, from a start that no cloth ever saw.
-static int taken_back(void)
-{
-    taut_cloth_def def = taut_cloth_def_default(grid);
-    def.max_pins = 4;
-    def.features = TAUT_FEATURE_PULL;
-    def.speed_limit = 0;
-    def.damping_per_s = 0;
-    taut_cloth *wild;
-    DONE(taut_cloth_create(grid, &def, spare, BYTES, &wild));
-    DONE(taut_cloth_set_stiffness_uniform(wild, 1e6f, 1e6f, 1e6f, 1e4f));
-    static float start[SIDE * SIDE][3];
-    for (int i = 0; i < SIDE * SIDE; ++i) {
-        const int odd = (i / SIDE + i % SIDE) % 2;
-        start[i][0] = start[i][1] = start[i][2] = odd ? 1e5f : -1e5f;
-    }
-    DONE(taut_cloth_set_positions(wild, SIDE * SIDE, start[0]));
-    uint32_t flags = 0;
-    uint64_t hash = 0, after, index;
-    int frames = 0;
-    while (frames < 1000 && flags == 0) {
-        DONE(taut_cloth_state_hash(wild, &hash));
-        DONE(taut_cloth_step(wild, &flags));
-        ++frames;
-    }
-    REQUIRE(flags == TAUT_STEP_NON_FINITE);
-    DONE(taut_cloth_state_hash(wild, &after));
-    DONE(taut_cloth_step_index(wild, &index));
-    REQUIRE(after == hash && (int)index == frames - 1);
-    DONE(taut_cloth_step_many(wild, 10, &flags)); // it would end so again, so the other nine are not tried
-    DONE(taut_cloth_step_index(wild, &index));
-    REQUIRE(flags == TAUT_STEP_NON_FINITE && (int)index == frames - 1);
-    return 0;
-}
+#include "refusals_frames.h"
 
 int main(int argc, char **argv)
 {
@@ -621,9 +590,17 @@ int main(int argc, char **argv)
     DONE(taut_cloth_pin(cloth, 21));
     DONE(taut_cloth_pin(cloth, 21)); // pinned already
     DONE(taut_cloth_step_many(cloth, 5, &flags));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_width_supported(5, &flags));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_set_width(cloth, 5));
+    for (uint32_t width = TAUT_WIDTH_SCALAR; width <= TAUT_WIDTH_NEON; ++width) {
+        uint32_t has;
+        DONE(taut_width_supported(width, &has));
+        REQUIRE(taut_cloth_set_width(cloth, width) == (has ? TAUT_OK : TAUT_ERROR_UNSUPPORTED_WIDTH));
+    }
     DONE(taut_cloth_add_force(cloth, 30, force));
 
-    if (versions() || grids() || definitions() || blocks() || handles() || meshes() || arguments() || stiffness() || snapshots()) {
+    if (versions() || grids() || definitions() || blocks() || handles() || meshes() || arguments() || stiffness() || snapshots() ||
+        plans()) {
         return 1;
     }
 

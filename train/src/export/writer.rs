@@ -22,7 +22,9 @@ use super::proto::{ModelProto, OperatorSetIdProto, StringStringEntryProto, data_
 use super::words::check_words;
 use super::{ExportError, ExportMeta, MAX_FILE_BYTES, TOKENS, WordTable};
 use crate::nets::generator::Deconvolution;
-use crate::nets::{CHANNELS, DESCRIPTION, DESCRIPTION_EPSILON, FABRIC, GRID, Generator, NOISE, SHARES_EPSILON};
+use crate::nets::{
+    CHANNELS, DESCRIPTION, DESCRIPTION_EPSILON, FABRIC, GRID, Generator, HEAD_SCALE, NOISE, SHARES_EPSILON,
+};
 
 /// Version of the operators; both runtimes that matter know it.
 const OPSET: i64 = 17;
@@ -82,8 +84,6 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let share_epsilon = g.floats("words.share_epsilon", &[SHARES_EPSILON]);
     let share = g.node("words.share_above_zero", "Add", &[&share, &share_epsilon], vec![]);
     let words = g.node("words.sum", "Div", &[&mean, &share], vec![]);
-    let head = g.linear("fabric.head", &words, &m.fabric)?;
-    g.node("fabric", "Tanh", &[&head], vec![]);
 
     // Scaled to a mean square of 1, as `nets::normalise` does it.
     let squares = g.node("words.squares", "Mul", &[&words, &words], vec![]);
@@ -94,6 +94,12 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let above_zero = g.node("words.above_zero", "Add", &[&mean_square, &epsilon], vec![]);
     let root = g.node("words.root", "Sqrt", &[&above_zero], vec![]);
     let description = g.node("description", "Div", &[&words, &root], vec![]);
+    let scale = g.floats("heads.scale", &[HEAD_SCALE]);
+    let scaled = g.node("heads.scaled", "Mul", &[&description, &scale], vec![]);
+    let heard = g.concat("heads.heard", &[&scaled, &words]);
+    let head = g.linear("fabric.head", &heard, &m.fabric)?;
+    g.node("fabric", "Tanh", &[&head], vec![]);
+
     let v = g.concat("v", &[&description, "noise"]);
     let v = g.node("v.pixel", "Unsqueeze", &[&v, &axes23], vec![]);
     let first = g.deconvolution("first", &v, &m.first)?;
@@ -108,7 +114,12 @@ fn network(m: &Generator, words: &WordTable) -> Result<GraphBuilder, ExportError
     let fifth = with_pins(g, "fifth", &s4, &m.fifth)?;
     let residual = g.node("fifth.residual", "Add", &[&fifth, &a4], vec![]);
     let a5 = g.node("fifth.active", "Relu", &[&residual], vec![]);
-    let sixth = with_pins(g, "sixth", &a5, &m.sixth)?;
+    let mut sixth = with_pins(g, "sixth", &a5, &m.sixth)?;
+    if let Some(level) = &m.level {
+        let level = g.linear("level", &heard, level)?;
+        let level = g.node("level.pixel", "Unsqueeze", &[&level, &axes23], vec![]);
+        sixth = g.node("sixth.levelled", "Add", &[&sixth, &level], vec![]);
+    }
     g.node("field", "Tanh", &[&sixth], vec![]);
 
     g.output("field", &[None, Some(CHANNELS), Some(GRID), Some(GRID)]);

@@ -40,6 +40,8 @@ pub struct TrainConfig {
     pub seed: u64,
     /// Base width of the generator (16: 3.8 million weights).
     pub generator_width: usize,
+    /// Whether the words set the level of each family directly (off in the paper).
+    pub levels: bool,
     /// Base width of the discriminator.
     pub discriminator_width: usize,
     /// Whether the discriminator sees the description (off in the paper).
@@ -103,6 +105,7 @@ impl Default for TrainConfig {
         TrainConfig {
             seed: 1,
             generator_width: 16,
+            levels: true,
             discriminator_width: 16,
             conditional: true,
             picture: vec![Channel::Checker, Channel::Silhouette],
@@ -110,7 +113,7 @@ impl Default for TrainConfig {
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
-            steps: StageSteps { matching: 500, positions: 40, adversarial: 20 },
+            steps: StageSteps { matching: 300, positions: 40, adversarial: 20 },
             matching_rate: 2e-3,
             matching_end: 0.03,
             learning_rate: 1e-4,
@@ -150,10 +153,11 @@ impl TrainConfig {
         }
     }
 
-    /// The paper's own recipe: a discriminator that does not see the words, no paired term, no prior, no regression.
+    /// The paper's own recipe: a generator without levels, a discriminator that does not see the words, no paired term, no prior, no regression.
     pub fn paper() -> TrainConfig {
         let ours = TrainConfig::default();
         TrainConfig {
+            levels: false,
             conditional: false,
             paired: 0.0,
             prior: 0.0,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use taut::{Budget, noise};
 use taut_lab::compare::{self, Case, Setting};
-use taut_lab::fabric::{self, Fabric};
+use taut_lab::fabric::{self, Fabric, KINDS};
 use taut_lab::scene::Scene;
 
 use super::{TrainConfig, TrainError};
@@ -117,7 +117,7 @@ impl Dataset {
         Ok(Dataset {
             training: set(config.seed, config.fabrics)?,
             evaluation: set(config.seed ^ EVALUATION, config.evaluation_fabrics)?,
-            words,
+            words: weighted(words),
             seed: config.seed,
             variation: config.variation,
             codings: Coding::of(meta),
@@ -166,14 +166,20 @@ impl Dataset {
     /// What the net shall say of a fabric: field `[4][32][32]` and fabric [5] in tanh's range. The noise varies the field
     /// smoothly, as two pieces of one fabric differ.
     pub fn target(&self, fabric: &Fabric, noise: &[f32]) -> (Vec<f32>, Vec<f32>) {
-        let k = corrected_stiffness(fabric);
         let mut field = Vec::with_capacity(CHANNELS * GRID * GRID);
         let factors: Vec<f64> =
             (0..GRID * GRID).map(|i| (self.variation * pattern(noise, i / GRID, i % GRID)).exp()).collect();
+        let k = corrected_stiffness(fabric);
         for (k, coding) in k.iter().zip(&self.codings.0) {
             field.extend(factors.iter().map(|f| coding.encode(f64::from(*k) * f) as f32));
         }
         (field, self.numbers(fabric).map(|t| t as f32).to_vec())
+    }
+
+    /// The levels of the field in tanh's range: what it is where the noise varies nothing.
+    pub fn levels(&self, fabric: &Fabric) -> [f64; CHANNELS] {
+        let k = corrected_stiffness(fabric);
+        std::array::from_fn(|i| self.codings.0[i].encode(f64::from(k[i])))
     }
 
     /// The fabric's own numbers, the second part of [`Dataset::target`].
@@ -203,6 +209,28 @@ fn pattern(noise: &[f32], row: usize, column: usize) -> f64 {
     let cos = |n: f64, x: f64| (n * PI * x).cos();
     let modes = [1.0, cos(1.0, u), cos(1.0, v), cos(1.0, u) * cos(1.0, v), cos(2.0, u), cos(2.0, v)];
     modes.iter().zip(noise).map(|(m, z)| m * f64::from(*z)).sum::<f64>() / 6f64.sqrt()
+}
+
+/// How much a word counts in the direction of a description: names of fabrics most, so that "thin grey jersey" points where
+/// "jersey" does, and "jersey t-shirt" too. Arora, Liang, Ma 2017 weight words for the same end, by their frequency.
+pub fn salience(word: &str) -> f32 {
+    let names = KINDS.iter().any(|k| k.names.contains(&word));
+    let goes_with = KINDS.iter().any(|k| k.words.contains(&word));
+    match (names, goes_with) {
+        (true, false) => 1.0,
+        (true, true) => 0.5,
+        _ => 0.25,
+    }
+}
+
+/// The table with every vector as long as its word is salient.
+fn weighted(mut words: WordTable) -> WordTable {
+    let dimensions = words.dimensions();
+    for (token, vector) in words.tokens.iter().zip(words.vectors.chunks_exact_mut(dimensions)) {
+        let weight = salience(token);
+        vector.iter_mut().for_each(|x| *x *= weight);
+    }
+    words
 }
 
 fn example(

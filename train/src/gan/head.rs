@@ -1,31 +1,59 @@
-//! First weights of the fabric head.
+//! First weights of what is linear in the words: the numbers of the fabric, the levels of the field.
 //!
-//! The head is linear in the sum of the word vectors, so its best weights can be computed: ridge regression on what
+//! Their best weights can be computed: ridge regression on what
 //! the sampled descriptions mean. Descent alone would not get there in the steps of a run, since the vectors of words
 //! that stand together are much alike.
 
+use burn::module::Param;
+use burn::nn::Linear;
+use burn::tensor::{Device, TensorData};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use super::{Dataset, TrainError};
-use crate::nets::{DESCRIPTION, FABRIC};
+use crate::nets::{CHANNELS, FABRIC, HEAD_INPUT};
 
 /// Descriptions of the regression: every name with every modifier comes several times.
 const SAMPLES: usize = 4096;
 /// Weight of the squares of the head's weights against the sum of the squared errors. Ten times less fits the samples
 /// better by a third, but then words that stand in no sample say too much.
-const RIDGE: f64 = 0.1;
+const RIDGE: f64 = 0.02;
 
-/// Weights [1024][5] and biases [5] of the head, by regression on the first descriptions of the stream.
-pub(super) fn fit(data: &Dataset) -> Result<(Vec<f32>, Vec<f32>), TrainError> {
-    let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+/// A linear layer over what a head hears of a description: weights [inputs][outputs] and biases.
+pub(super) struct Head {
+    weights: Vec<f32>,
+    biases: Vec<f32>,
+}
+
+impl Head {
+    /// Puts it in the place of a layer's weights.
+    pub fn set(&self, layer: &mut Linear, device: &Device) {
+        let outputs = self.biases.len();
+        let shape = [self.weights.len() / outputs, outputs];
+        layer.weight = Param::from_data(TensorData::new(self.weights.clone(), shape), device);
+        layer.bias = Some(Param::from_data(TensorData::new(self.biases.clone(), [outputs]), device));
+    }
+}
+
+/// The heads of the fabric's numbers and of the field's levels, by regression on the first descriptions of the stream.
+pub(super) fn fit(data: &Dataset) -> Result<[Head; 2], TrainError> {
+    // what tanh makes the number of; the ends of the range are far, so they are cut to what tanh still resolves
+    let before_tanh = |t: f64| t.clamp(-0.98, 0.98).atanh();
+    let (mut inputs, mut numbers, mut levels) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..SAMPLES {
         let (fabric, words) = data.streamed(i as u32);
-        inputs.extend(data.describe(&words).into_iter().map(f64::from));
-        // what tanh makes the number of; the ends of the range are far, so they are cut to what tanh still resolves
-        outputs.extend(data.numbers(&fabric).into_iter().map(|t| t.clamp(-0.98, 0.98).atanh()));
+        let sum: Vec<f64> = data.describe(&words).into_iter().map(f64::from).collect();
+        let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-9);
+        // as `nets::head_input` has it
+        inputs.extend(sum.iter().map(|x| x / length));
+        inputs.extend(sum);
+        numbers.extend(data.numbers(&fabric).map(before_tanh));
+        levels.extend(data.levels(&fabric).map(before_tanh));
     }
-    ridge(inputs, outputs, [DESCRIPTION, FABRIC], RIDGE)
+    let fit = |outputs, n| {
+        ridge(inputs.clone(), outputs, [HEAD_INPUT, n], RIDGE).map(|(weights, biases)| Head { weights, biases })
+    };
+    Ok([fit(numbers, FABRIC)?, fit(levels, CHANNELS)?])
 }
 
 /// Minimises the sum of |x W + b - y|^2 and `weight` |W|^2 over rows x of `inputs` and y of `outputs`. W comes row-major.

@@ -104,11 +104,15 @@ fn train(
         let report = trainer.step.is_multiple_of(config.report_every) || trainer.step == total;
         if report {
             let sheet = out.join(format!("sheet-{:06}.png", trainer.step));
-            let score = trainer.evaluate(Some(&sheet))?;
-            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score }))?;
             // where later stages follow, the weights are no candidates: the score sees one drape per fabric on a coarse
             // grid without noise, and not how smooth a field is
             let candidate = stage == config.steps.last() || trainer.step == total;
+            if candidate {
+                trainer.calibrate();
+            }
+            let score = trainer.evaluate(Some(&sheet))?;
+            let field = trainer.field_error()?;
+            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score, "evaluation_ln_k": field }))?;
             if candidate && best.is_none_or(|(b, _)| score < b) {
                 *best = Some((score, trainer.step));
                 trainer.save_generator(&out.join("best.bpk"))?;

@@ -20,6 +20,9 @@ use crate::nets::{
     GeneratorOutput, NOISE,
 };
 
+/// Share of the first weights of the last layer that is left where levels are there from the start.
+const PATTERN_START: f64 = 0.1;
+
 /// What a step trains on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -87,7 +90,8 @@ impl Trainer {
         let device = Device::flex().autodiff();
         let adam = AdamConfig::new().with_beta_1(config.beta1).with_epsilon(1e-8);
         let clipped = adam.clone().with_grad_clipping(Some(GradientClippingConfig::Norm(config.gradient_clip)));
-        let generator = GeneratorConfig { width: config.generator_width }.init(config.seed, &device);
+        let generator =
+            GeneratorConfig { width: config.generator_width, levels: config.levels }.init(config.seed, &device);
         let discriminator = DiscriminatorConfig {
             width: config.discriminator_width,
             picture_channels: config.picture.len(),
@@ -97,10 +101,17 @@ impl Trainer {
         .init(config.seed ^ 0xd15c, &device);
         let mut generator = generator.map_err(TrainError::part)?;
         if config.steps.matching > 0 {
-            let (weights, biases) = head::fit(&data)?;
-            let head = &mut generator.fabric;
-            head.weight = Param::from_data(TensorData::new(weights, [DESCRIPTION, FABRIC]), &device);
-            head.bias = Some(Param::from_data(TensorData::new(biases, [FABRIC]), &device));
+            let [fabric, level] = head::fit(&data)?;
+            fabric.set(&mut generator.fabric, &device);
+            if let Some(head) = &mut generator.level {
+                level.set(head, &device);
+                // the pattern begins small beside the levels
+                let pattern = &mut generator.sixth.deconvolution;
+                // as data, so that the product is no part of the gradient
+                pattern.weight = Param::from_data((pattern.weight.val() * PATTERN_START).into_data(), &device);
+                pattern.bias =
+                    pattern.bias.take().map(|b| Param::from_data((b.val() * PATTERN_START).into_data(), &device));
+            }
         }
         Ok(Trainer {
             config: config.clone(),
@@ -340,6 +351,38 @@ impl Trainer {
             picture: scalar(&picture),
             ..told.losses()
         })
+    }
+
+    /// Brings the running statistics of the normalisations, which inference uses, up to the weights as they are: passes over
+    /// fabrics of the stream that change no weight. The running mean of training lags behind the weights and, in the last
+    /// stages, comes from a few fabrics only.
+    pub fn calibrate(&mut self) {
+        const PASSES: u32 = 64;
+        let b = self.config.batch as u32;
+        for pass in 0..PASSES {
+            // the last numbers of the stream: training takes the first
+            let first = u32::MAX - (pass + 1) * b;
+            let drawn: Vec<_> = (0..b).map(|i| self.data.streamed(first + i)).collect();
+            let pins = |i: u32| random_pins(noise::bits(self.config.seed ^ 0xca1b, first + i));
+            let items = drawn.iter().zip(0..).map(|((f, w), i)| (f, w.as_str(), pins(i)));
+            let batch = self.batch(items, |i| self.data.noise(u64::from(first) + i as u64), &self.device);
+            self.generator.forward(batch.words, batch.noise, batch.pins);
+        }
+        // `valid` is what takes the statistics over
+        self.generator = self.generator.valid().train();
+    }
+
+    /// Root mean square error of ln(K) of warp, weft and shear over the evaluation fabrics as inference has it, each
+    /// without noise and pins.
+    pub fn field_error(&self) -> Result<f64, TrainError> {
+        let device = Device::flex();
+        let items = self.data.evaluation.iter().map(|e| (&e.fabric, e.words.as_str(), vec![]));
+        let batch = self.batch(items, |_| vec![0.0; NOISE], &device);
+        let out = self.generator.valid().forward(batch.words, batch.noise, batch.pins);
+        let off = (out.field - batch.field).square().mean_dim(0).mean_dim(2).mean_dim(3);
+        let off: Vec<f32> = off.into_data().try_into_vec().map_err(|e| TrainError::Part(format!("{e:?}")))?;
+        let slopes = self.data.codings().0.map(|c| c.line().1);
+        Ok((off.iter().zip(slopes).take(3).map(|(o, s)| f64::from(*o) * s * s).sum::<f64>() / 3.0).sqrt())
     }
 
     /// Score of the evaluation set: mean NMSE of the generated pictures against the references (paper, VI.B, 9), with the

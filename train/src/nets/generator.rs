@@ -9,7 +9,7 @@
 //! | third | BN(second ++ skip x2) | 2w, 16 x 16 |
 //! | fourth | BN(third ++ skip x4) | w, 32 x 32 |
 //! | fifth | BN(fourth ++ skip x8) ++ pins | w, 32 x 32 (stride 1), the fourth added to it before ReLU |
-//! | sixth | BN(fifth) ++ pins | 4 channels, 32 x 32 (stride 1), tanh |
+//! | sixth | BN(fifth) ++ pins | 4 channels, 32 x 32 (stride 1), plus the levels, tanh |
 //!
 //! The fifth and sixth are the "two layers more" than DCGAN, and the sum with the fourth is the residual. **Stitching**:
 //! the paper says that the outputs of the activation layers of the first and of the second to the fourth deconvolution
@@ -23,9 +23,14 @@
 //!
 //! The description is scaled to one length first ([`super::description`]): one word says as much as three.
 //!
-//! Beside the field stands a linear head over the description alone, which tells what belongs to the fabric as a
-//! whole; it takes the sum of the words as it is, for the logarithms of their factors add up. Noise does not reach it:
-//! another seed is another piece of the same fabric.
+//! **Levels**: the stiffness of each family as a whole, added to the sixth layer in front of tanh, comes from a linear
+//! layer over the words, twice: scaled to one length, where "jersey" and "jersey t-shirt" say the same, and as their sum,
+//! where "heavy" is a factor (the field is logarithmic). The paper has none: there the convolutions alone must make the
+//! level of warp and weft out of the words, and get it wrong by half (`docs/training.md`); without
+//! [`GeneratorConfig::levels`] it is the paper's.
+//!
+//! Beside the field stands a second linear head over the words alone, which tells what belongs to the fabric as a whole.
+//! Noise does not reach it: another seed is another piece of the same fabric.
 
 use burn::Tensor;
 use burn::module::Module;
@@ -43,11 +48,13 @@ use super::{CHANNELS, DESCRIPTION, FABRIC, MAX_WIDTH, NOISE, NetError, normalise
 pub struct GeneratorConfig {
     /// Base width w: channels of the last 32 x 32 layers; 1 to [`MAX_WIDTH`], default 16.
     pub width: usize,
+    /// Whether the words set the level of each channel directly; the paper's generator has no such layer.
+    pub levels: bool,
 }
 
 impl Default for GeneratorConfig {
     fn default() -> Self {
-        Self { width: 16 }
+        Self { width: 16, levels: true }
     }
 }
 
@@ -70,7 +77,8 @@ impl GeneratorConfig {
             fourth: Deconvolution::new(&mut b, 3 * w, 0, w, 2),
             fifth: Deconvolution::new(&mut b, 2 * w, 1, w, 1),
             sixth: Deconvolution::new(&mut b, w, 1, CHANNELS, 1),
-            fabric: b.linear(DESCRIPTION, FABRIC),
+            fabric: b.linear(HEAD_INPUT, FABRIC),
+            level: self.levels.then(|| b.linear(HEAD_INPUT, CHANNELS)),
         })
     }
 }
@@ -116,8 +124,10 @@ pub struct Generator {
     pub fifth: Deconvolution,
     /// w + pins to the four channels.
     pub sixth: Deconvolution,
-    /// 1024 to the five numbers of the fabric.
+    /// 2048 ([`head_input`]) to the five numbers of the fabric.
     pub fabric: Linear,
+    /// 2048 ([`head_input`]) to the level of each channel.
+    pub level: Option<Linear>,
 }
 
 /// What the generator tells, before decoding: everything in [-1, 1].
@@ -134,8 +144,11 @@ impl Generator {
     /// [batch, 1, 32, 32] in [0, 1]. On an autodiff device the batch's own statistics normalise (and the running
     /// statistics follow them), which needs a batch of two at least to mean anything; `valid()` uses the running ones.
     pub fn forward(&self, description: Tensor<2>, noise: Tensor<2>, pin_distance: Tensor<4>) -> GeneratorOutput {
-        let fabric = tanh(self.fabric.forward(description.clone()));
-        let v = Tensor::cat(vec![normalise(description), noise], 1);
+        let scaled = normalise(description.clone());
+        let heard = head_input(scaled.clone(), description);
+        let fabric = tanh(self.fabric.forward(heard.clone()));
+        let level = self.level.as_ref().map(|l| l.forward(heard));
+        let v = Tensor::cat(vec![scaled, noise], 1);
         let [batch, n] = v.dims();
         let a1 = relu(self.first.forward(v.reshape([batch, n, 1, 1])));
         let skip = self.skip.forward(a1.clone());
@@ -145,7 +158,11 @@ impl Generator {
         let a4 = relu(self.fourth.forward(stitch(a3, 4)));
         let a5 = self.fifth.forward_with(stitch(a4.clone(), 8), pin_distance.clone());
         let a5 = relu(a5 + a4);
-        let field = tanh(self.sixth.forward_with(a5, pin_distance));
+        let pattern = self.sixth.forward_with(a5, pin_distance);
+        let field = tanh(match level {
+            Some(level) => pattern + level.reshape([batch, CHANNELS, 1, 1]),
+            None => pattern,
+        });
         GeneratorOutput { field, fabric }
     }
 
@@ -161,7 +178,19 @@ impl Generator {
             + ct(&self.fifth.deconvolution)
             + ct(&self.sixth.deconvolution)
             + self.fabric.weight.val().square().sum()
+            + self.level.as_ref().map_or(self.fabric.weight.val().zeros_like().sum(), |l| l.weight.val().square().sum())
     }
+}
+
+/// Numbers that the linear heads hear.
+pub const HEAD_INPUT: usize = 2 * DESCRIPTION;
+
+/// Share of the scaled description in [`head_input`]: it makes its length 1, that of a word.
+pub const HEAD_SCALE: f32 = 1.0 / 32.0;
+
+/// What the linear heads hear: the description at length 1, then the sum of the words, [batch, 2048].
+pub fn head_input(scaled: Tensor<2>, sum: Tensor<2>) -> Tensor<2> {
+    Tensor::cat(vec![scaled * HEAD_SCALE, sum], 1)
 }
 
 /// Each pixel becomes a block of `times` x `times` equal ones.
@@ -184,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_width_of_zero_is_an_error() {
-        let e = GeneratorConfig { width: 0 }.init(1, &Device::flex()).expect_err("zero");
+        let e = GeneratorConfig { width: 0, levels: true }.init(1, &Device::flex()).expect_err("zero");
         assert_eq!(e, NetError::Width(0));
         assert!(e.to_string().contains('0'));
     }

@@ -13,7 +13,7 @@ pub mod init;
 pub use description::{DESCRIPTION_EPSILON, SHARES_EPSILON, normalise};
 pub use discriminator::{Discriminator, DiscriminatorConfig};
 pub use error::NetError;
-pub use generator::{Generator, GeneratorConfig, GeneratorOutput};
+pub use generator::{Generator, GeneratorConfig, GeneratorOutput, HEAD_INPUT, HEAD_SCALE, head_input};
 
 /// Length of the description vector: the sum of the word vectors, of which the paper takes the mean (section V.A.1).
 pub const DESCRIPTION: usize = 1024;

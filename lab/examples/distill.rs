@@ -1,0 +1,39 @@
+//! Measures the planner's rows and writes `lab/data/plan.csv` and `core/src/plan/table.rs`.
+//! `cargo run --release -p taut-lab --example distill [LEDGER.jsonl]`: with a ledger it can be interrupted and goes on. Without
+//! any measuring, `cargo run -p taut-lab --example distill -- --table` writes the table of the rows that are there.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use taut_lab::distill;
+use taut_lab::front::{Bench, Row, Set};
+use taut_lab::ledger::Ledger;
+use taut_lab::scene::Scene;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let data = root.join("data/plan.csv");
+    let argument = std::env::args().nth(1);
+    if argument.as_deref() != Some("--table") {
+        let path = argument.map_or_else(|| std::env::temp_dir().join("taut-distill.jsonl"), PathBuf::from);
+        let mut ledger: Ledger<Row> = Ledger::open(&path, &"distill 1")?;
+        let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };
+        let mut bench = Bench::new(Set::Quick, &mut none);
+        let list = distill::list();
+        let mut points = Vec::new();
+        for (i, (hold, method, spec)) in list.iter().enumerate() {
+            let key = spec.key();
+            if ledger.get(&key).is_none() {
+                eprintln!("{} of {}: {key}", i + 1, list.len());
+                ledger.add(&key, bench.measure(spec)?)?;
+            }
+            points.extend(ledger.get(&key).and_then(|row| distill::point(*hold, method, spec, row)));
+        }
+        std::fs::create_dir_all(root.join("data"))?;
+        std::fs::write(&data, distill::csv(&points))?;
+    }
+    let points = distill::read(&std::fs::read_to_string(&data)?).ok_or("lab/data/plan.csv is no list of rows")?;
+    std::fs::write(root.join("../core/src/plan/table.rs"), distill::table(&points))?;
+    println!("{} rows", points.len());
+    Ok(())
+}
