@@ -5,7 +5,7 @@ use taut_lab::fabric::Fabric;
 use taut_onnx::Correction;
 
 use crate::failure::Failure;
-use crate::report;
+use crate::report as told;
 
 mod against;
 mod atlas;
@@ -13,6 +13,8 @@ mod cusick;
 mod features;
 mod front;
 mod invariance;
+mod page;
+mod report;
 mod scenes;
 mod step;
 
@@ -29,6 +31,8 @@ pub enum Measure {
     Invariance(invariance::Args),
     /// Measures what every setting costs and how wrong it is: rows, pictures, a scoreboard of the corrections.
     Front(front::Args),
+    /// Measures all of it and writes one page that holds every table and picture.
+    Report(report::Args),
     /// Lists the scenes that measurements run.
     Scenes(scenes::Args),
     /// Compares with trajectories of another engine: strains by direction, silhouette, pictures, distance.
@@ -45,6 +49,7 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
         Measure::Atlas(args) => atlas::run(args),
         Measure::Invariance(args) => invariance::run(args),
         Measure::Front(args) => front::run(args),
+        Measure::Report(args) => report::run(args),
         Measure::Scenes(args) => scenes::run(args),
         Measure::Against(args) => against::run(args),
         Measure::Cusick(args) => cusick::run(args),
@@ -62,8 +67,8 @@ fn processor() -> String {
 /// cloth.
 pub fn fabric_of(c: &Correction) -> Fabric {
     Fabric::named(&c.description).unwrap_or_else(|| Fabric {
-        kind: report::NO_KIND,
-        stiffness: report::medians(c),
+        kind: told::NO_KIND,
+        stiffness: told::medians(c),
         density_kg_m2: c.density_kg_m2,
         hinge_rigidity_n_m: c.hinge_rigidity_n_m,
         measured: false,
