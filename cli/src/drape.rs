@@ -2,7 +2,7 @@
 
 use taut::ClothDef;
 use taut_lab::compare::{self, Case, Outcome, Setting};
-use taut_lab::fabric::Fabric;
+use taut_lab::fabric::{Fabric, rigidity_at};
 use taut_onnx::Correction;
 
 use crate::failure::{self, Failure, complain};
@@ -73,7 +73,7 @@ pub fn case(cloth: &args::Cloth, step: &args::Step, seconds: f32, correction: &C
         budget: step.budget,
         density_kg_m2,
         seconds,
-        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
+        hinge_rigidity_n_m: rigidity_at(correction.hinge_rigidity_n_m, correction.density_kg_m2, density_kg_m2),
         seed: cloth.seed,
     })
 }

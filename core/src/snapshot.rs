@@ -26,7 +26,7 @@ use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 40;
 /// Bits of the flags.
 const PULL: u32 = 1;
@@ -138,7 +138,7 @@ impl Cloth<'_> {
         }
         put_floats(&mut rest, self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         let mut h = Hash64::new();
-        h.bytes(body);
+        h.bulk(body);
         put(&mut tail, &h.finish().to_le_bytes());
         Ok(size)
     }
@@ -177,7 +177,7 @@ impl Cloth<'_> {
         }
         let (body, tail) = bytes.split_at_checked(size - 8).ok_or(Error::Truncated)?;
         let mut h = Hash64::new();
-        h.bytes(body);
+        h.bulk(body);
         if u64_at(tail, 0) != h.finish() {
             return Err(Error::Checksum);
         }

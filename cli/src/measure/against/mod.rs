@@ -10,6 +10,7 @@ use serde::Serialize;
 use taut::{Budget, ClothDef};
 use taut_lab::against::{Comparison, Mesh, Reference, Stage};
 use taut_lab::compare::{self, Case, Outcome, Setting};
+use taut_lab::fabric::rigidity_at;
 use taut_onnx::{Generator, Request};
 
 use crate::failure::{self, Failure};
@@ -167,7 +168,7 @@ fn simulate(args: &Args, generator: &Generator, job: &Job) -> Result<Ran, Failur
         budget: Budget::Tuned,
         density_kg_m2: job.density_kg_m2,
         seconds: job.seconds,
-        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
+        hinge_rigidity_n_m: rigidity_at(correction.hinge_rigidity_n_m, correction.density_kg_m2, job.density_kg_m2),
         seed: args.seed,
     };
     let step = ClothDef { rate_hz: args.rate, substeps: args.substeps, ..ClothDef::default() };
