@@ -78,7 +78,6 @@ pub(crate) trait Vector:
     fn max(self, other: Self) -> Self;
 
     /// The smaller, `other` where they do not compare or are equal: [`crate::math::min`].
-    #[cfg_attr(not(test), expect(dead_code, reason = "the pair of max"))]
     fn min(self, other: Self) -> Self;
 
     /// Whether in any lane the number is above that of `other`.
@@ -86,6 +85,36 @@ pub(crate) trait Vector:
 
     /// In each lane `then` where the number is above that of `other`, else `otherwise`, also where they do not compare.
     fn above(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// 1 in each lane where the number is above that of `other`, else 0.
+    #[inline(always)]
+    fn one_above(self, other: Self) -> Self {
+        self.above(other, self.all(1.0), self.all(0.0))
+    }
+
+    /// 0 in each lane where the number is above that of `other`, else 1.
+    #[inline(always)]
+    fn one_unless_above(self, other: Self) -> Self {
+        self.above(other, self.all(0.0), self.all(1.0))
+    }
+
+    /// Where this one is 1 `then`, where it is 0 `otherwise`.
+    #[inline(always)]
+    fn pick(self, then: Self, otherwise: Self) -> Self {
+        self.above(self.all(0.5), then, otherwise)
+    }
+
+    /// Whether any lane is 1, of lanes that are 1 or 0.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.any_above(self.all(0.5))
+    }
+
+    /// Without the sign.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.max(self.all(0.0) - self)
+    }
 
     /// The lanes one place on in a row of vectors: the last of `before`, then all but the last of this one.
     fn next1(self, before: Self) -> Self;
