@@ -51,20 +51,20 @@ pub fn run(args: &args::Film) -> Result<(), Failure> {
     let folder = Folder::open(&args.out, &["film.gif", "film.json"])?;
     let every = (case.rate_hz / PICTURES_PER_S).round().max(1.0) as u32;
     let generated = Setting::Generated(correction.field.iter().copied().collect());
-    let settings = [
-        Setting::Reference(fabric_of(&correction)),
-        Setting::Uniform,
-        generated.clone(),
-        Setting::Limited(Box::new(generated), [LIMIT; 3]),
+    let models = [
+        Model::from(Setting::Reference(fabric_of(&correction))),
+        Setting::Uniform.into(),
+        generated.clone().into(),
+        Model::limited(generated, [LIMIT; 3]),
     ];
 
-    let progress = Progress::new(settings.len());
+    let progress = Progress::new(models.len());
     let (mut outcomes, mut films) = (Vec::new(), Vec::new());
-    for (i, setting) in settings.into_iter().enumerate() {
-        let name = setting.name();
+    for (i, model) in models.iter().enumerate() {
+        let name = model.name();
         let mut film = Vec::new();
         let mut peak = 0.0f64;
-        let outcome = compare::run_model(&case, &Model::from(setting), |cloth, frame| {
+        let outcome = compare::run_model(&case, model, |cloth, frame| {
             let now = 100.0 * f64::from(cloth.strain().largest);
             peak = peak.max(now);
             if frame.index % every == 0 {
@@ -72,7 +72,7 @@ pub fn run(args: &args::Film) -> Result<(), Failure> {
                 let positions = (0..cloth.grid().particles()).map(at).collect();
                 film.push(Moment { positions, stretch_pct: now, peak_pct: peak });
             }
-            progress.at(i, name, (frame.index + 1) as f32 / frame.of as f32);
+            progress.at(i, name, frame.done());
         })
         .map_err(|e| Failure::new(format_args!("the setting {name} cannot run: {e}")))?;
         outcomes.push(outcome);
