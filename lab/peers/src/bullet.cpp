@@ -2,6 +2,8 @@
 //
 // Links as taut has springs: structural, diagonal, and two particles on. In random order, as Bullet's own helpers do it: in
 // the order of the grid its Gauss-Seidel sweeps pull the sheet to one side.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
