@@ -8,6 +8,7 @@ pub mod cost;
 pub mod cusick;
 pub mod distill;
 pub mod fabric;
+pub mod fall;
 pub mod front;
 pub mod holdout;
 pub mod invariance;

@@ -10,6 +10,7 @@ use crate::report as told;
 mod against;
 mod atlas;
 mod cusick;
+mod fall;
 mod features;
 mod front;
 mod invariance;
@@ -25,6 +26,8 @@ pub enum Measure {
     Step(step::Args),
     /// What each feature costs in bytes and in time.
     Features(features::Args),
+    /// What it costs that a falling sheet stretches no more than so much, and a hundred capes.
+    Fall(fall::Args),
     /// Extremes of step, stiffness, mass, start and pins: where it is stable, bounded or refused.
     Atlas(atlas::Args),
     /// What must not depend on the frame rate, the frame times, the step, the mesh, the precision.
@@ -46,6 +49,7 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
     match what {
         Measure::Step(args) => step::run(args),
         Measure::Features(args) => features::run(args),
+        Measure::Fall(args) => fall::run(args),
         Measure::Atlas(args) => atlas::run(args),
         Measure::Invariance(args) => invariance::run(args),
         Measure::Front(args) => front::run(args),
