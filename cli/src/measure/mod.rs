@@ -76,5 +76,6 @@ pub fn fabric_of(c: &Correction) -> Fabric {
         density_kg_m2: c.density_kg_m2,
         hinge_rigidity_n_m: c.hinge_rigidity_n_m,
         measured: false,
+        softness: [1.0; 2],
     })
 }

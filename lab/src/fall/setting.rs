@@ -113,7 +113,7 @@ impl Setting {
         let limits = match self.kind {
             Kind::Plain | Kind::Inertia => Limits::None,
             Kind::Tethers | Kind::TethersInertia | Kind::TethersLimit => Limits::Tethers(0.0),
-            Kind::Levels => Limits::Levels(self.strain),
+            Kind::Levels => Limits::levels(self.strain),
         };
         let inertia = matches!(self.kind, Kind::Inertia | Kind::TethersInertia);
         let limited = self.kind == Kind::TethersLimit;
