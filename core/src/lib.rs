@@ -27,6 +27,7 @@
 
 mod air;
 mod ambient;
+mod around;
 pub mod baked;
 mod bounds;
 mod budget;
@@ -45,7 +46,6 @@ mod hash;
 mod hinge;
 mod implicit;
 mod inertia;
-mod lanes;
 mod layout;
 mod levels;
 mod limit;

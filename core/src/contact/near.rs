@@ -5,14 +5,13 @@ use super::{Bound, Moving, ROUNDING, Rules};
 use crate::colliders::MAX_COLLIDERS;
 use crate::layout::{Layout, span};
 use crate::math::max;
-use crate::simd::{Pass, Three, Vector};
+use crate::simd::{NUMBERS, Pass, Three, Vector};
 
 /// Rows that are looked at together.
 const BAND: usize = 8;
 
-/// Places of a row that are looked at together, and their numbers.
+/// Places of a row that are looked at together.
 const BLOCK: usize = 16;
-const NUMBERS: [f32; BLOCK] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 
 /// Moves the particles out of the colliders.
 pub(super) struct PushOut<'p> {

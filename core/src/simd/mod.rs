@@ -45,6 +45,10 @@ use crate::width::{Supported, Width};
 
 pub(crate) use three::{Three, load};
 
+/// The numbers of the lanes of the widest vector.
+pub(crate) const NUMBERS: [f32; 16] =
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+
 /// Some f32 that are worked on at once; each operation is that of the single number in each lane.
 pub(crate) trait Vector:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>

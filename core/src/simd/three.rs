@@ -91,6 +91,12 @@ impl<V: Vector> Three<V> {
     }
 
     #[inline(always)]
+    pub fn cross(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    }
+
+    #[inline(always)]
     pub fn length(self) -> V {
         self.squared().sqrt()
     }
