@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// An engine of that program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Engine {
     /// Its name there.
     pub name: &'static str,
