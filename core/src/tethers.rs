@@ -14,7 +14,7 @@ use crate::{Cloth, Error, simd};
 pub(crate) const TETHERS: usize = 2;
 
 /// Particles that are looked at together: one vector of the widest kind.
-const BLOCK: usize = 16;
+pub(crate) const BLOCK: usize = 16;
 /// Where the particles of a block have different pins. No particle is at this place of a plane.
 const MIXED: u32 = 0;
 /// Set where the pins of a block follow one another as its particles do, as below a pinned row: the place is the first

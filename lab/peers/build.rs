@@ -2,6 +2,9 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=src/bullet.cpp");
+    if std::env::var_os("CARGO_FEATURE_BULLET").is_none() {
+        return;
+    }
     let bullet = match pkg_config::Config::new().cargo_metadata(false).probe("bullet") {
         Ok(bullet) => bullet,
         Err(e) => {

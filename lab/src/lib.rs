@@ -15,6 +15,7 @@ pub mod invariance;
 pub mod ledger;
 pub mod metrics;
 pub mod npz;
+pub mod peers;
 pub mod picture;
 pub mod plot;
 pub mod scene;

@@ -15,6 +15,7 @@ mod features;
 mod front;
 mod invariance;
 mod page;
+mod peers;
 mod report;
 mod scenes;
 mod step;
@@ -28,6 +29,8 @@ pub enum Measure {
     Features(features::Args),
     /// What it costs that a falling sheet stretches no more than so much, and a hundred capes.
     Fall(fall::Args),
+    /// Other engines on the falling sheet, one thread: Bullet and rapier3d, if lab/peers was built.
+    Peers(peers::Args),
     /// Extremes of step, stiffness, mass, start and pins: where it is stable, bounded or refused.
     Atlas(atlas::Args),
     /// What must not depend on the frame rate, the frame times, the step, the mesh, the precision.
@@ -50,6 +53,7 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
         Measure::Step(args) => step::run(args),
         Measure::Features(args) => features::run(args),
         Measure::Fall(args) => fall::run(args),
+        Measure::Peers(args) => peers::run(args),
         Measure::Atlas(args) => atlas::run(args),
         Measure::Invariance(args) => invariance::run(args),
         Measure::Front(args) => front::run(args),
