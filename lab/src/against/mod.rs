@@ -78,7 +78,7 @@ impl Stage {
     }
 
     /// A place with z up, in taut's axes.
-    fn place(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    pub fn place(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         [x + self.origin_m[0], z + self.origin_m[1], self.origin_m[2] - y]
     }
 
@@ -198,6 +198,11 @@ impl Reference {
         let x: Vec<[f32; 3]> = last.iter().map(|p| stage.place(*p)).collect();
         let (strains, picture) = (mesh.strains(&x, &pinned), stage.view.picture(mesh, &x));
         Ok(Reference { stage, mesh: mesh.clone(), pinned, x, strains, picture })
+    }
+
+    /// Its vertices in taut's axes, in m.
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.x
     }
 
     /// Compares a grid of taut's, as [`crate::compare::Outcome`] has it.
