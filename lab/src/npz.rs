@@ -200,7 +200,8 @@ pub enum Numbers<'a> {
 /// Writes arrays by their names and shapes, compressed as NumPy's `savez_compressed` does. Errors: the file, a shape that
 /// does not hold as many numbers as there are.
 pub fn write(path: &Path, arrays: &[(&str, &[usize], Numbers<'_>)]) -> Result<(), NpzError> {
-    let wrong = |array: Option<&str>, reason: String| NpzError { path: path.into(), array: array.map(Into::into), reason };
+    let wrong =
+        |array: Option<&str>, reason: String| NpzError { path: path.into(), array: array.map(Into::into), reason };
     let file = File::create(path).map_err(|e| wrong(None, format!("cannot be written: {e}")))?;
     let mut zip = zip::ZipWriter::new(file);
     let options = zip::write::FileOptions::default().compression_method(zip::CompressionMethod::Deflated);

@@ -82,6 +82,11 @@ impl Stage {
         [x + self.origin_m[0], z + self.origin_m[1], self.origin_m[2] - y]
     }
 
+    /// A place in taut's axes, with z up.
+    pub fn place_back(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        [x - self.origin_m[0], self.origin_m[2] - z, y - self.origin_m[1]]
+    }
+
     /// The vertices that the scene pins: those at the places of the pinned particles of a fine grid.
     fn pinned(&self, mesh: &Mesh) -> Vec<usize> {
         let at = |u: f32, v: f32| mesh.uv.iter().position(|p| (p[0] - u).hypot(p[1] - v) < 1e-4);
@@ -256,6 +261,14 @@ mod tests {
             let stage = Stage::named(name).unwrap();
             write(&path, &[("x_final", f4("(1089, 3)", &start(&mesh, name)))]);
             let reference = Reference::load(&path, &mesh, stage).unwrap();
+            assert!(
+                reference
+                    .positions()
+                    .iter()
+                    .flat_map(|x| stage.place_back(*x))
+                    .zip(start(&mesh, name))
+                    .all(|(back, x)| (back - x).abs() < 1e-6)
+            );
             // taut's start but for its bump
             let (rows, columns) = (16, 20);
             let x: Vec<[f32; 3]> = (0..rows * columns)

@@ -5,11 +5,14 @@
 //! docs/reference.md.
 
 mod cloth;
+pub mod command;
 mod error;
 mod fabrics;
 mod hinge;
 mod material;
 mod membrane;
+mod pictures;
+mod run;
 pub mod scenes;
 mod sheet;
 mod solid;

@@ -157,7 +157,7 @@ fn a_hanging_sheet_stretches_by_its_own_weight() {
     let top = (x[(rows - 1) * columns + 2][1] - x[(rows - 2) * columns + 2][1]) / cell - 1.0;
     assert!((top / (load * (h - 0.5 * cell)) - 1.0).abs() < 1e-2, "{top}");
     // without Poisson's effect it keeps its width
-    assert!((x[4][0] - x[0][0] - 0.2).abs() < 1e-9);
+    assert!((x[4][0] - x[0][0] - 0.2).abs() < 1e-6);
 }
 
 /// Deflection of the end of a level strip, clamped at u = 0, and its closed form; `load` = rho g L^3/B.
@@ -175,7 +175,6 @@ fn cantilever(load: f64, along_u: bool) -> f64 {
     let rigidity = 2e-5;
     let g = load * rigidity / (0.2 * l.powi(3));
     let around = Surroundings { gravity_m_s2: [0.0, -g, 0.0], ..NOTHING };
-    // a trace of a bend: straight, the hinges feel no weight
     let x = sheet
         .uv
         .iter()
@@ -186,7 +185,7 @@ fn cantilever(load: f64, along_u: bool) -> f64 {
         .collect();
     let pins: Vec<usize> = (0..sheet.uv.len()).filter(|i| at(sheet.uv[*i])[0] < 1.5 * cell).collect();
     let mut cloth = Cloth::new(&sheet, material([5000.0, 0.0, 5000.0, 2000.0], rigidity), around, x, &pins).unwrap();
-    println!("{load}: {} steps", cloth.settle(1e-4, 300).unwrap());
+    cloth.settle(1e-4, 400).unwrap();
     let end = (0..sheet.uv.len()).filter(|i| at(sheet.uv[*i])[0] > long - 1e-9);
     let ends: Vec<f64> = end.map(|i| -cloth.positions()[i][1] / l).collect();
     ends.iter().sum::<f64>() / ends.len() as f64
@@ -228,7 +227,7 @@ fn a_cantilever_bends_as_a_beam() {
     for along_u in [true, false] {
         for load in [0.05, 3.0] {
             let (mine, beam) = (cantilever(load, along_u), elastica(load));
-            println!("{load}: {mine} {beam} {}", mine / beam);
+            assert!((mine / beam - 1.0).abs() < 0.02, "{load}: {mine} {beam}");
         }
     }
 }
@@ -287,8 +286,7 @@ fn a_sheet_rests_on_a_ball_or_slides_from_it() {
     // the way down in the first and in the second half
     let slide = |friction: f64| {
         let around = Surroundings { gravity_m_s2: [0.0, -9.8, 0.0], solid: Some(ball), friction, ..NOTHING };
-        let mut cloth =
-            Cloth::new(&sheet, material([900.0, 0.0, 900.0, 400.0], 1e-4), around, x.clone(), &[]).unwrap();
+        let mut cloth = Cloth::new(&sheet, material([900.0, 0.0, 900.0, 400.0], 1e-4), around, x.clone(), &[]).unwrap();
         let mut ways = [0.0; 2];
         for way in &mut ways {
             let before = cloth.positions()[12];
