@@ -5,8 +5,9 @@ use taut_lab::scene::Scene;
 
 use super::{Cloth, Material, ReferenceError, Sheet, Surroundings, V3};
 
-/// Steps of a simulated second, and of a frame of a trajectory.
+/// Steps of a simulated second.
 pub const STEPS_PER_S: usize = 240;
+/// Steps of a frame of a trajectory.
 pub const STEPS_PER_FRAME: usize = 8;
 
 /// The lab's bump of about 1 % of the side, made as small as that of ARCSim's scenes: at most 1 mm on 1 m.
