@@ -3,7 +3,7 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use zip::ZipArchive;
@@ -188,25 +188,58 @@ impl<'b> Header<'b> {
     }
 }
 
+/// Numbers to write.
+#[derive(Clone, Copy, Debug)]
+pub enum Numbers<'a> {
+    /// As float32.
+    Floats(&'a [f32]),
+    /// As int32.
+    Indices(&'a [i32]),
+}
+
+/// Writes arrays by their names and shapes, compressed as NumPy's `savez_compressed` does. Errors: the file, a shape that
+/// does not hold as many numbers as there are.
+pub fn write(path: &Path, arrays: &[(&str, &[usize], Numbers<'_>)]) -> Result<(), NpzError> {
+    let wrong =
+        |array: Option<&str>, reason: String| NpzError { path: path.into(), array: array.map(Into::into), reason };
+    let file = File::create(path).map_err(|e| wrong(None, format!("cannot be written: {e}")))?;
+    let mut zip = zip::ZipWriter::new(file);
+    let options = zip::write::FileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+    for (name, shape, numbers) in arrays {
+        let (descr, count, data): (_, _, Vec<u8>) = match numbers {
+            Numbers::Floats(all) => ("<f4", all.len(), all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+            Numbers::Indices(all) => ("<i4", all.len(), all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+        };
+        if shape.iter().product::<usize>() != count {
+            return Err(wrong(Some(name), format!("has {count} numbers, which is not the shape {shape:?}")));
+        }
+        let axes: String = shape.iter().map(|n| format!("{n}, ")).collect();
+        let bytes = npy(descr, &format!("({})", axes.trim_end()), &data);
+        let put = zip.start_file(format!("{name}.npy"), options).map_err(|e| e.to_string());
+        put.and_then(|()| zip.write_all(&bytes).map_err(|e| e.to_string())).map_err(|e| wrong(Some(name), e))?;
+    }
+    zip.finish().map(|_| ()).map_err(|e| wrong(None, e.to_string()))
+}
+
+/// The bytes of a `.npy` file of a type such as `<f4`.
+pub(crate) fn npy(descr: &str, shape: &str, data: &[u8]) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+    while !(header.len() + 11).is_multiple_of(64) {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
-    use std::io::Write;
-
     use super::*;
 
-    /// The bytes of a `.npy` file of a type such as `<f4`.
-    pub fn npy(descr: &str, shape: &str, data: &[u8]) -> Vec<u8> {
-        let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
-        while (header.len() + 11) % 64 != 0 {
-            header.push(' ');
-        }
-        header.push('\n');
-        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-        bytes.extend((header.len() as u16).to_le_bytes());
-        bytes.extend(header.as_bytes());
-        bytes.extend(data);
-        bytes
-    }
+    pub(crate) use super::npy;
 
     /// Writes an archive of arrays, deflated as NumPy's `savez_compressed` does.
     pub fn write(path: &Path, arrays: &[(&str, Vec<u8>)]) {
@@ -227,6 +260,19 @@ pub(crate) mod tests {
     /// int32 numbers as the bytes of an array.
     pub fn i4(shape: &str, values: &[i32]) -> Vec<u8> {
         npy("<i4", shape, &values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())
+    }
+
+    #[test]
+    fn what_is_written_comes_back() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("w.npz");
+        let (x, i) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.5], [7, 0, 9]);
+        super::write(&path, &[("x", &[2, 3], Numbers::Floats(&x)), ("i", &[3], Numbers::Indices(&i))]).unwrap();
+        let mut npz = Npz::open(&path).unwrap();
+        assert_eq!(npz.floats("x").unwrap(), Array { shape: vec![2, 3], values: x.to_vec() });
+        assert_eq!(npz.indices("i").unwrap(), Array { shape: vec![3], values: vec![7, 0, 9] });
+        let e = super::write(&path, &[("x", &[2, 2], Numbers::Floats(&x))]).unwrap_err().to_string();
+        assert!(e.contains("array `x`: has 6 numbers"), "{e}");
     }
 
     #[test]

@@ -5,4 +5,6 @@ pub mod export;
 pub mod gan;
 pub mod image;
 pub mod nets;
+pub mod reference;
+mod sparse;
 pub mod words;

@@ -78,8 +78,13 @@ impl Stage {
     }
 
     /// A place with z up, in taut's axes.
-    fn place(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    pub fn place(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         [x + self.origin_m[0], z + self.origin_m[1], self.origin_m[2] - y]
+    }
+
+    /// A place in taut's axes, with z up.
+    pub fn place_back(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        [x - self.origin_m[0], self.origin_m[2] - z, y - self.origin_m[1]]
     }
 
     /// The vertices that the scene pins: those at the places of the pinned particles of a fine grid.
@@ -200,6 +205,11 @@ impl Reference {
         Ok(Reference { stage, mesh: mesh.clone(), pinned, x, strains, picture })
     }
 
+    /// Its vertices in taut's axes, in m.
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.x
+    }
+
     /// Compares a grid of taut's, as [`crate::compare::Outcome`] has it.
     pub fn compare(&self, positions: &[[f32; 3]], rows: usize, columns: usize, finite: bool) -> Comparison {
         let finite = finite && positions.as_flattened().iter().all(|x| x.is_finite());
@@ -251,6 +261,14 @@ mod tests {
             let stage = Stage::named(name).unwrap();
             write(&path, &[("x_final", f4("(1089, 3)", &start(&mesh, name)))]);
             let reference = Reference::load(&path, &mesh, stage).unwrap();
+            assert!(
+                reference
+                    .positions()
+                    .iter()
+                    .flat_map(|x| stage.place_back(*x))
+                    .zip(start(&mesh, name))
+                    .all(|(back, x)| (back - x).abs() < 1e-6)
+            );
             // taut's start but for its bump
             let (rows, columns) = (16, 20);
             let x: Vec<[f32; 3]> = (0..rows * columns)

@@ -24,10 +24,10 @@ impl Cloth<'_> {
                 return vec![f64::NAN; self.stiffness.len()];
             }
         }
-        let mut solution: Vec<f64> = self.pattern.free.iter().flat_map(|&i| by_position[i].map(|g| -g)).collect();
+        let mut solution: Vec<f64> = self.pattern.free().iter().flat_map(|&i| by_position[i].map(|g| -g)).collect();
         hessian.solve(&mut solution);
         let mut lambda = vec![[0.0; 3]; x.len()];
-        for (part, &i) in solution.chunks_exact(3).zip(&self.pattern.free) {
+        for (part, &i) in solution.chunks_exact(3).zip(self.pattern.free()) {
             lambda[i].copy_from_slice(part);
         }
         self.springs

@@ -36,7 +36,7 @@ impl Cloth<'_> {
             energy += part;
             size += part;
         }
-        for &i in &self.pattern.free {
+        for &i in self.pattern.free() {
             let part = dot(self.weight_n, x[i]);
             energy -= part;
             size += part.abs();
@@ -55,7 +55,7 @@ impl Cloth<'_> {
                 all[s.b][c] += factor * d[c];
             }
         }
-        let gradient: Vec<f64> = self.pattern.free.iter().flat_map(|&i| all[i]).collect();
+        let gradient: Vec<f64> = self.pattern.free().iter().flat_map(|&i| all[i]).collect();
         // A number that is not finite must not be lost in the maximum.
         let larger = |most: f64, g: &f64| {
             if g.is_nan() { f64::INFINITY } else { most.max(g.abs()) }
@@ -130,7 +130,7 @@ impl Cloth<'_> {
     /// The free particles of `x` moved by `length` times `step`.
     fn moved(&self, x: &[[f64; 3]], step: &[f64], length: f64) -> Vec<[f64; 3]> {
         let mut x = x.to_vec();
-        for (step, &i) in step.chunks_exact(3).zip(&self.pattern.free) {
+        for (step, &i) in step.chunks_exact(3).zip(self.pattern.free()) {
             for (x, s) in x[i].iter_mut().zip(step) {
                 *x += length * s;
             }
@@ -185,7 +185,7 @@ impl Cloth<'_> {
     /// Moves the free particles, mostly out of the plane, by up to 1e-3 of a cell.
     fn kick(&self, x: &mut [[f64; 3]], number: usize) {
         let size = 1e-3 * self.springs.rest_u_m().min(self.springs.rest_v_m());
-        for &i in &self.pattern.free {
+        for &i in self.pattern.free() {
             let t = (i * 7 + number * 13) as f64;
             x[i][2] += size * (0.9 * t).sin();
             x[i][0] += 0.3 * size * (1.7 * t).sin();
@@ -242,7 +242,7 @@ mod tests {
         for (j, g) in gradient.iter().enumerate() {
             let at = |h: f64| {
                 let mut y = x.clone();
-                y[pattern.free[j / 3]][j % 3] += h;
+                y[pattern.free()[j / 3]][j % 3] += h;
                 cloth.energy(&y).0
             };
             assert!(((at(1e-6) - at(-1e-6)) / 2e-6 - g).abs() < 1e-6);

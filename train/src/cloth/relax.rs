@@ -39,7 +39,7 @@ impl Cloth<'_> {
             sums[s.a] += 2.0 * k;
             sums[s.b] += 2.0 * k;
         }
-        let mut sorted: Vec<f64> = self.pattern.free.iter().map(|&i| sums[i]).collect();
+        let mut sorted: Vec<f64> = self.pattern.free().iter().map(|&i| sums[i]).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let median = sorted[sorted.len() / 2];
         // omega^2 <= sums/M bounds any frequency, for any shape; this fills half of what dt < 2/omega allows.
