@@ -145,9 +145,9 @@ impl Kind {
 }
 
 /// Tension of a hanging sheet of 1 m, in weights of the sheet for each m of its width. Along the warp, which hangs down: half
-/// of the sheet's weight on the quarter circle 10 cm about a corner that it is hung by, 1/(0.1 pi). Along the weft a third of
-/// that, across the load; along the diagonal between.
-const LOADS: [f32; 3] = [3.18, 1.0, 2.0];
+/// of the sheet's weight on the quarter circle 10 cm about a corner that it is hung by, 1/(0.1 pi). Along the weft two thirds
+/// of that, since it lies across the load; along the diagonal nearly all.
+const LOADS: [f32; 3] = [3.18, 2.0, 3.0];
 
 impl Fabric {
     /// How far the fabric stretches in use along warp, weft and diagonal, as fractions of the rest length: the strain at which
