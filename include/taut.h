@@ -455,6 +455,10 @@ typedef uint32_t taut_stiffness;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// One frame of a cloth, stepped in bands of rows: begun by taut_cloth_bands_begin, ended by taut_bands_end. Between the two
+// nothing else may use the cloth; taut_bands_run and taut_bands_count may be called by any number of threads at a time.
+typedef struct taut_bands taut_bands;
+
 // A cloth in a block of the caller's memory. One thread at a time: functions that take `taut_cloth *` change it, and
 // nothing else may use it meanwhile; functions that take `const taut_cloth *` may run at the same time as one another.
 // Different cloths never share anything.
@@ -1292,6 +1296,58 @@ TAUT_API
 taut_result taut_cloth_step_all(taut_cloth *const *cloths,
                                 uint32_t count,
                                 uint32_t *out_flags);
+
+// Memory that a frame in bands of rows_per_band rows needs beside the cloth, at least 8 rows; the last band takes what is
+// left over. It is the same for every frame.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (fewer rows than 8;
+// an implicit solver, or a feature other than TAUT_FEATURE_PULL, TAUT_FEATURE_MASK and TAUT_FEATURE_TETHERS: such a cloth
+// cannot be stepped in bands).
+// Threads: reads the cloth.
+TAUT_API
+taut_result taut_cloth_bands_memory(const taut_cloth *cloth,
+                                    uint32_t rows_per_band,
+                                    taut_memory *out);
+
+// Begins a frame that many threads step: bands of rows_per_band rows, in a block of block_size bytes of the caller's, whose
+// content does not matter. Then taut_bands_run for every phase and band, then taut_bands_end: the cloth is as it is after
+// taut_cloth_step, with the same bits, for any number of bands and threads. The block must stay until the end.
+//
+// Errors: those of taut_cloth_bands_memory, TAUT_ERROR_BLOCK_TOO_SMALL, TAUT_ERROR_NO_STIFFNESS. Then nothing was begun.
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_cloth_bands_begin(taut_cloth *cloth,
+                                   uint32_t rows_per_band,
+                                   void *block,
+                                   size_t block_size,
+                                   taut_bands **out);
+
+// How many bands there are, and how many phases: 0 where there is nothing to step, as in a cloth that sleeps.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
+// Threads: any, also several at a time.
+TAUT_API taut_result taut_bands_count(const taut_bands *bands, uint32_t *out_bands, uint32_t *out_phases);
+
+// Steps one band through one phase, both counted from 0. All bands of a phase may run at the same time, in any order; a
+// phase begins when all bands have ended the one before, which a job system sees to (a barrier, a counter). What comes too
+// early or twice is refused.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (no such band; not the
+// band's next phase; a band has yet to end the phase before). Then nothing was done.
+// Threads: any, also several at a time.
+TAUT_API
+taut_result taut_bands_run(const taut_bands *bands,
+                           uint32_t phase,
+                           uint32_t band);
+
+// Ends the frame; the handle is none any more. out_flags, which may be NULL, gets the TAUT_STEP_* of taut_cloth_step.
+//
+// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (a band has phases to
+// go: then the particles are taken back to where they were before the frame, and the handle is none any more either).
+// Threads: changes the cloth.
+TAUT_API
+taut_result taut_bands_end(taut_bands *bands,
+                           uint32_t *out_flags);
 
 // Whether this machine has the vectors of a taut_width: 1, or 0.
 //

@@ -172,6 +172,48 @@ inline taut_cloth_def cloth_def_default(const Grid &on) noexcept { return taut_c
     return taut_cloth_memory(on.get(), &def, &out);
 }
 
+// One frame of a cloth in bands of rows that many threads may step: begun by Cloth::bands_begin, and nothing else may use the
+// cloth until the end. A frame that was begun must be ended.
+class Bands {
+public:
+    Bands() noexcept = default;
+    explicit Bands(taut_bands *handle) noexcept : handle_(handle) {}
+    Bands(const Bands &) = delete;
+    Bands &operator=(const Bands &) = delete;
+    Bands(Bands &&from) noexcept : handle_(from.handle_) { from.handle_ = nullptr; }
+    Bands &operator=(Bands &&from) noexcept
+    {
+        taut_bands *handle = from.handle_;
+        from.handle_ = nullptr;
+        handle_ = handle;
+        return *this;
+    }
+
+    [[nodiscard]] taut_result count(uint32_t &bands, uint32_t &phases) const noexcept
+    {
+        return taut_bands_count(handle_, &bands, &phases);
+    }
+
+    // By any thread, for different bands of one phase at a time.
+    [[nodiscard]] taut_result run(uint32_t phase, uint32_t band) const noexcept
+    {
+        return taut_bands_run(handle_, phase, band);
+    }
+
+    // The handle is empty afterwards. out_flags may be left out.
+    [[nodiscard]] taut_result end(uint32_t *out_flags = nullptr) noexcept
+    {
+        taut_bands *handle = handle_;
+        handle_ = nullptr;
+        return taut_bands_end(handle, out_flags);
+    }
+
+    explicit operator bool() const noexcept { return handle_ != nullptr; }
+
+private:
+    taut_bands *handle_ = nullptr;
+};
+
 class Cloth {
 public:
     Cloth() noexcept = default;
@@ -450,6 +492,24 @@ public:
     }
 
     [[nodiscard]] taut_result state_hash(uint64_t &out) noexcept { return taut_cloth_state_hash(handle_, &out); }
+
+    // A frame in bands that many threads may step.
+
+    [[nodiscard]] taut_result bands_memory(uint32_t rows_per_band, taut_memory &out) const noexcept
+    {
+        return taut_cloth_bands_memory(handle_, rows_per_band, &out);
+    }
+
+    // The block stays until the end of the bands.
+    [[nodiscard]] taut_result bands_begin(uint32_t rows_per_band, Block block, Bands &out) noexcept
+    {
+        taut_bands *handle = nullptr;
+        const taut_result result = taut_cloth_bands_begin(handle_, rows_per_band, block.data, block.size, &handle);
+        if (result == TAUT_OK) {
+            out = Bands(handle);
+        }
+        return result;
+    }
 
     // The handle for taut.h, NULL if this is empty. It can change the cloth, so a const Cloth does not give it.
     taut_cloth *get() noexcept { return handle_; }

@@ -14,6 +14,8 @@ use crate::numbers::{self, GridSize, Sides};
 const EXAMPLES: &str = "Examples:
   taut drape \"heavy blue denim\"                     picture, table and report in out/drape
   taut drape \"light silk\" --scene edge --json       the report alone on stdout
+  taut film denim --scene curtain                   the same in motion, four choices, out/film/film.gif
+  taut gallery \"grey felt\" \"pink silk\"             fabrics of your own words, hung and draped
   taut correct \"heavy blue denim\" --out denim.tautfield
                                                     a stiffness field for taut_cloth_load_stiffness
   taut plan denim --scene edge --tolerance 2        the cheapest settings that stretch by 2 % at most
@@ -33,6 +35,10 @@ pub struct Cli {
 pub enum Command {
     /// Simulates a scene with seven choices of stiffness: a picture, a table, a report.
     Drape(Drape),
+    /// The same scene in motion with four choices of stiffness: an animated picture.
+    Film(Film),
+    /// Fabrics by their words, hung and draped: a picture of each scene.
+    Gallery(Gallery),
     /// Writes the stiffness field of a fabric to a small file that the C library loads.
     Correct(Correct),
     /// Tells the cheapest settings that a scene requires, and why.
@@ -67,11 +73,12 @@ pub struct Cloth {
     pub model: Option<PathBuf>,
 }
 
-/// `taut drape`.
+/// The sheet where no size is said.
+pub const SQUARE_METRE: Sides = Sides { width_m: 1.0, height_m: 1.0 };
+
+/// How the cloth is stepped.
 #[derive(Args, Debug)]
-pub struct Drape {
-    #[command(flatten)]
-    pub cloth: Cloth,
+pub struct Step {
     /// Frames per second, 1 to 10000.
     #[arg(long, value_name = "HZ", default_value = "60", value_parser = numbers::rate, allow_hyphen_values = true)]
     pub rate: f32,
@@ -84,6 +91,15 @@ pub struct Drape {
     /// Mass per area, for all settings [default: what the generator tells].
     #[arg(long, value_name = "KG_M2", value_parser = numbers::density, allow_hyphen_values = true)]
     pub density: Option<f32>,
+}
+
+/// `taut drape`.
+#[derive(Args, Debug)]
+pub struct Drape {
+    #[command(flatten)]
+    pub cloth: Cloth,
+    #[command(flatten)]
+    pub step: Step,
     /// Simulated time in s, at most 3600.
     #[arg(long, value_name = "S", default_value = "10", value_parser = numbers::seconds, allow_hyphen_values = true)]
     pub seconds: f32,
@@ -91,6 +107,56 @@ pub struct Drape {
     #[arg(long, value_name = "DIR", default_value = "out/drape")]
     pub out: PathBuf,
     /// Only the report on stdout; the table goes to stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `taut film`.
+#[derive(Args, Debug)]
+pub struct Film {
+    #[command(flatten)]
+    pub cloth: Cloth,
+    #[command(flatten)]
+    pub step: Step,
+    /// Simulated time in s, at most 30.
+    #[arg(long, value_name = "S", default_value = "4", value_parser = numbers::short_seconds, allow_hyphen_values = true)]
+    pub seconds: f32,
+    /// Folder for film.gif and film.json; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "out/film")]
+    pub out: PathBuf,
+    /// Only film.json on stdout; the table goes to stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `taut gallery`.
+#[derive(Args, Debug)]
+pub struct Gallery {
+    /// Fabrics in words, at most 12 [default: eight from chiffon to canvas].
+    #[arg(value_name = "DESCRIPTION")]
+    pub descriptions: Vec<String>,
+    /// A scene; give it several times for several [default: hang2, drape and cusick].
+    #[arg(long = "scene", value_name = "SCENE")]
+    pub scenes: Vec<Scene>,
+    /// Particles, each side 2 to 4096.
+    #[arg(long, value_name = "ROWSxCOLUMNS", default_value = "32x32", value_parser = numbers::grid, allow_hyphen_values = true)]
+    pub grid: GridSize,
+    /// Substeps of a frame at 60 Hz, 1 to 1024.
+    #[arg(long, value_name = "N", default_value = "32", value_parser = numbers::substeps, allow_hyphen_values = true)]
+    pub substeps: u32,
+    /// Simulated time in s, at most 3600.
+    #[arg(long, value_name = "S", default_value = "6", value_parser = numbers::seconds, allow_hyphen_values = true)]
+    pub seconds: f32,
+    /// Another seed gives other fields of the same fabrics.
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// A generator file instead of the one that is built in.
+    #[arg(long, value_name = "FILE.onnx")]
+    pub model: Option<PathBuf>,
+    /// Folder for a picture of each scene and gallery.json; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "out/gallery")]
+    pub out: PathBuf,
+    /// Only gallery.json on stdout; the table goes to stderr.
     #[arg(long)]
     pub json: bool,
 }
@@ -154,9 +220,9 @@ pub struct Info {
 pub fn answer(e: &clap::Error) -> Result<(), Failure> {
     match e.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => failure::print(&e.render().to_string()),
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
-            Err(Failure::new("no command: give drape, correct, plan, info or measure (taut --help tells more)"))
-        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => Err(Failure::new(
+            "no command: give drape, film, gallery, correct, plan, info or measure (taut --help tells more)",
+        )),
         _ => Err(Failure::new(short(&e.render().to_string()))),
     }
 }
@@ -203,8 +269,8 @@ mod tests {
         assert_eq!(d.cloth.scene, Scene::Hang2);
         assert_eq!((d.cloth.grid.rows, d.cloth.grid.columns), (32, 32));
         assert_eq!((d.cloth.size.width_m, d.cloth.size.height_m), (1.0, 1.0));
-        assert_eq!((d.rate, d.substeps, d.seconds), (60.0, 16, 10.0));
-        assert_eq!((d.budget, d.density, d.cloth.seed), (Budget::Tuned, None, 0));
+        assert_eq!((d.step.rate, d.step.substeps, d.seconds), (60.0, 16, 10.0));
+        assert_eq!((d.step.budget, d.step.density, d.cloth.seed), (Budget::Tuned, None, 0));
         assert_eq!(d.out, PathBuf::from("out/drape"));
         assert!(!d.json && d.cloth.model.is_none());
     }
@@ -217,8 +283,8 @@ mod tests {
         );
         assert_eq!((d.cloth.grid.rows, d.cloth.grid.columns), (16, 24));
         assert_eq!((d.cloth.size.width_m, d.cloth.size.height_m), (1.5, 2.0));
-        assert_eq!((d.rate, d.substeps, d.seconds), (30.0, 8, 1.5));
-        assert_eq!((d.budget, d.density), (Budget::Certified, Some(0.2)));
+        assert_eq!((d.step.rate, d.step.substeps, d.seconds), (30.0, 8, 1.5));
+        assert_eq!((d.step.budget, d.step.density), (Budget::Certified, Some(0.2)));
         assert_eq!((d.cloth.seed, d.cloth.scene), (u64::MAX, Scene::Hang1));
         assert!(d.json && d.cloth.model == Some("m.onnx".into()));
     }

@@ -2,7 +2,7 @@
 
 use taut::ClothDef;
 use taut_lab::compare::{self, Case, Outcome, Setting};
-use taut_lab::fabric::Fabric;
+use taut_lab::fabric::{Fabric, rigidity_at};
 use taut_onnx::Correction;
 
 use crate::failure::{self, Failure, complain};
@@ -19,7 +19,7 @@ const FILES: [&str; 2] = ["drape.png", "report.json"];
 /// Runs the command.
 pub fn run(args: &args::Drape) -> Result<(), Failure> {
     let (generator, correction) = model::correct(&args.cloth)?;
-    let case = case(args, &correction)?;
+    let case = case(&args.cloth, &args.step, args.seconds, &correction)?;
     let reference = fabric_of(&correction);
     let folder = Folder::open(&args.out, &FILES)?;
     let outcomes = simulate(&case, &reference, &correction)?;
@@ -47,8 +47,8 @@ pub fn run(args: &args::Drape) -> Result<(), Failure> {
 }
 
 /// What all settings share. Everything that core would refuse later is refused here.
-fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
-    let density_kg_m2 = match args.density {
+pub fn case(cloth: &args::Cloth, step: &args::Step, seconds: f32, correction: &Correction) -> Result<Case, Failure> {
+    let density_kg_m2 = match step.density {
         Some(density) => density,
         None => {
             let told = correction.density_kg_m2;
@@ -59,22 +59,21 @@ fn case(args: &args::Drape, correction: &Correction) -> Result<Case, Failure> {
             })?
         }
     };
-    let cloth = &args.cloth;
-    let step = ClothDef { rate_hz: args.rate, substeps: args.substeps, density_kg_m2, ..ClothDef::default() };
-    step.check().map_err(|e| {
-        Failure::new(format_args!("{} Hz x {} substeps is a step of {} s: {e}", args.rate, args.substeps, step.dt_s()))
+    let def = ClothDef { rate_hz: step.rate, substeps: step.substeps, density_kg_m2, ..ClothDef::default() };
+    def.check().map_err(|e| {
+        Failure::new(format_args!("{} Hz x {} substeps is a step of {} s: {e}", step.rate, step.substeps, def.dt_s()))
     })?;
     Ok(Case {
         scene: cloth.scene,
         rows: cloth.grid.rows,
         columns: cloth.grid.columns,
         size_m: [cloth.size.width_m, cloth.size.height_m],
-        rate_hz: args.rate,
-        substeps: args.substeps,
-        budget: args.budget,
+        rate_hz: step.rate,
+        substeps: step.substeps,
+        budget: step.budget,
         density_kg_m2,
-        seconds: args.seconds,
-        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
+        seconds,
+        hinge_rigidity_n_m: rigidity_at(correction.hinge_rigidity_n_m, correction.density_kg_m2, density_kg_m2),
         seed: cloth.seed,
     })
 }

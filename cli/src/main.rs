@@ -12,6 +12,8 @@ mod colour;
 mod correct;
 mod drape;
 mod failure;
+mod film;
+mod gallery;
 mod info;
 mod measure;
 mod model;
@@ -38,6 +40,8 @@ fn run() -> Result<(), Failure> {
     };
     match &cli.command {
         Command::Drape(args) => drape::run(args),
+        Command::Film(args) => film::run(args),
+        Command::Gallery(args) => gallery::run(args),
         Command::Correct(args) => correct::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Info(args) => info::run(args),

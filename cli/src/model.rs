@@ -25,12 +25,19 @@ pub fn load(path: Option<&Path>) -> Result<Generator, Failure> {
     })
 }
 
-/// The field of a fabric for a scene. Words that did not count are named on stderr.
+/// The field of a fabric for a scene, and the generator that made it. Words that did not count are named on stderr.
 pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
+    let generator = load(args.model.as_deref())?;
+    let correction = correct_with(&generator, args)?;
+    Ok((generator, correction))
+}
+
+/// The same with a generator that is there.
+pub fn correct_with(generator: &Generator, args: &args::Cloth) -> Result<Correction, Failure> {
     let columns = args.grid.columns as usize;
     let pins: Vec<(usize, usize)> =
         args.scene.pins(args.grid.rows as usize, columns).into_iter().map(|p| (p / columns, p % columns)).collect();
-    let request = Request {
+    let correction = generator.correct(&Request {
         description: &args.description,
         seed: args.seed,
         rows: args.grid.rows as usize,
@@ -38,11 +45,9 @@ pub fn correct(args: &args::Cloth) -> Result<(Generator, Correction), Failure> {
         width_m: args.size.width_m,
         height_m: args.size.height_m,
         pins: &pins,
-    };
-    let generator = load(args.model.as_deref())?;
-    let correction = generator.correct(&request)?;
+    })?;
     warn(&correction, generator.info().tokens);
-    Ok((generator, correction))
+    Ok(correction)
 }
 
 fn warn(c: &Correction, limit: usize) {

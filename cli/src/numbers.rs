@@ -65,6 +65,11 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     within(text, f32::MIN_POSITIVE..=3600.0, "").map_err(|_| "must be above 0, at most 3600 s".into())
 }
 
+/// Simulated time of a film in s.
+pub fn short_seconds(text: &str) -> Result<f32, String> {
+    within(text, f32::MIN_POSITIVE..=30.0, "").map_err(|_| "must be above 0, at most 30 s".into())
+}
+
 /// A share in percent: above 0, at most 100.
 pub fn percent(text: &str) -> Result<f32, String> {
     within(text, f32::MIN_POSITIVE..=100.0, "").map_err(|_| "must be above 0, at most 100 %".into())

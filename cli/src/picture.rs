@@ -10,7 +10,7 @@ use crate::notes::{self, number};
 use crate::report::{Report, Setting};
 
 /// Height of the viewer over what lies on something, in degrees.
-const FROM_ABOVE: f32 = 35.0;
+pub const FROM_ABOVE: f32 = 35.0;
 
 impl From<PictureError> for Failure {
     fn from(e: PictureError) -> Failure {
@@ -22,10 +22,6 @@ impl From<PictureError> for Failure {
 pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8>, Failure> {
     let [rows, columns] = report.grid.map(|n| n as usize);
     let [width_m, height_m] = report.size_m;
-    let pins = scene.pins(rows, columns);
-    // where a whole part is held, a mark at each of its particles would hide it
-    let pins = if pins.len() > 2 * (rows + columns) { &[][..] } else { &pins };
-    let present: Vec<bool> = (0..rows * columns).map(|i| scene.has(i, rows, columns)).collect();
     let mut sheet = Sheet::new(one_line(&report.description))
         .subtitle(notes::setup(report))
         .style(colour::style(&report.description))
@@ -35,10 +31,7 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
         sheet = sheet.seen_from(FROM_ABOVE);
     }
     for (i, (outcome, setting)) in outcomes.iter().zip(&report.settings).enumerate() {
-        let grid = Grid::new(&outcome.positions, rows, columns, width_m, height_m)?
-            .with_pins(pins)?
-            .with_mask(&present)?
-            .with_solid(scene.solid(width_m, height_m));
+        let grid = grid(scene, &outcome.positions, [rows, columns], report.size_m)?;
         let mut panel = Panel::new(notes::heading(setting.name), grid);
         for line in lines(setting, report.grid) {
             panel = panel.line(line);
@@ -51,6 +44,19 @@ pub fn png(report: &Report, scene: Scene, outcomes: &[Outcome]) -> Result<Vec<u8
     Ok(encode_png(&sheet.render()?)?)
 }
 
+/// The cloth of a scene as it is drawn: its pins, what is absent, what it lies on.
+pub fn grid(scene: Scene, positions: &[[f32; 3]], shape: [usize; 2], size_m: [f32; 2]) -> Result<Grid, PictureError> {
+    let ([rows, columns], [width_m, height_m]) = (shape, size_m);
+    let pins = scene.pins(rows, columns);
+    // where a whole part is held, a mark at each of its particles would hide it
+    let pins = if pins.len() > 2 * (rows + columns) { &[][..] } else { &pins };
+    let present: Vec<bool> = (0..rows * columns).map(|i| scene.has(i, rows, columns)).collect();
+    Ok(Grid::new(positions, rows, columns, width_m, height_m)?
+        .with_pins(pins)?
+        .with_mask(&present)?
+        .with_solid(scene.solid(width_m, height_m)))
+}
+
 /// What stands above a cloth.
 fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
     let stretch = s.stretch_pct;
@@ -61,4 +67,30 @@ fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
         format!("{cut}  {:.1} ns/particle-step", s.ns_per_particle_step),
         format!("{} substeps  {:.0} us/frame", s.substeps, notes::us_per_frame(s, grid)),
     ]
+}
+
+/// The name of a scene's picture, with the length of life that a folder wants.
+pub fn name(scene: Scene) -> &'static str {
+    match scene {
+        Scene::Hang2 => "hang2.png",
+        Scene::Edge => "edge.png",
+        Scene::Hang1 => "hang1.png",
+        Scene::Swing => "swing.png",
+        Scene::Curtain => "curtain.png",
+        Scene::Drape => "drape.png",
+        Scene::Flag => "flag.png",
+        Scene::Cusick => "cusick.png",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_named_after_their_scenes() {
+        for scene in Scene::ALL {
+            assert_eq!(name(scene), format!("{scene}.png"));
+        }
+    }
 }

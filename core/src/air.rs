@@ -19,9 +19,10 @@
 
 use crate::ambient::AIR_AT;
 use crate::force::View;
-use crate::layout::{block, block_mut, span};
-use crate::math::{max, min, sqrt};
-use crate::{Cloth, Error, noise};
+use crate::layout::{Layout, block};
+use crate::math::sqrt;
+use crate::simd::{NUMBERS, Pass, Three, Vector};
+use crate::{Cloth, Error, noise, simd};
 
 /// Cells of a row that are worked on at a time.
 const LANES: usize = 16;
@@ -195,23 +196,19 @@ impl Cloth<'_> {
             dt,
             limit: self.drag_share() / dt,
         };
-        let (x, v) = (self.x.view(), self.v.view());
-        for row in 1..l.rows {
-            // a row has one cell less than particles
-            for first in (0..l.columns.saturating_sub(1)).step_by(LANES) {
-                let at = l.at(row - 1, first);
-                // the planes go on beyond the border by more than a block
-                if let Some(mut forces) = flow.cells(at, l.stride, x, v, self.inverse) {
-                    drop_absent(&mut forces, self.mask, at, l.stride, l.columns - 1 - first);
-                    add_quarters(&mut self.force, &forces, at, l.stride);
-                }
-            }
-        }
+        let [x, y, z] = &mut self.force;
+        let blow = Blow {
+            layout: &l,
+            flow,
+            x: self.x.view(),
+            v: self.v.view(),
+            inverse: self.inverse,
+            mask: self.mask,
+            force: [&mut **x, &mut **y, &mut **z],
+        };
+        simd::run(self.width, blow);
     }
 }
-
-/// Forces on neighbouring cells of a row along each axis in N.
-type Forces = [[f32; LANES]; 3];
 
 /// The air of one substep.
 struct Flow {
@@ -225,82 +222,137 @@ struct Flow {
 }
 
 impl Flow {
-    /// The forces on the cells from the one whose upper left corner is at a place; none where a plane ends before.
-    #[inline(never)]
-    fn cells(&self, at: usize, stride: usize, x: View<'_>, v: View<'_>, inverse: &[f32]) -> Option<Forces> {
-        let upper = |plane| block::<{ LANES + 1 }>(plane, at);
-        let lower = |plane| block::<{ LANES + 1 }>(plane, at + stride);
-        let (x0, y0, z0, x1, y1, z1) = (upper(x.x)?, upper(x.y)?, upper(x.z)?, lower(x.x)?, lower(x.y)?, lower(x.z)?);
-        let (u0, v0, w0, u1, v1, w1) = (upper(v.x)?, upper(v.y)?, upper(v.z)?, lower(v.x)?, lower(v.y)?, lower(v.z)?);
-        let (m0, m1) = (upper(inverse)?, lower(inverse)?);
-        let [mut ox, mut oy, mut oz] = [[0.0; LANES]; 3];
-        for i in 0..LANES {
-            // the diagonals
-            let (ax, ay, az) = (x1[i + 1] - x0[i], y1[i + 1] - y0[i], z1[i + 1] - z0[i]);
-            let (bx, by, bz) = (x1[i] - x0[i + 1], y1[i] - y0[i + 1], z1[i] - z0[i + 1]);
-            let nx = 0.5 * (ay * bz - az * by);
-            let ny = 0.5 * (az * bx - ax * bz);
-            let nz = 0.5 * (ax * by - ay * bx);
-            let vx = 0.25 * ((u0[i] + u0[i + 1]) + (u1[i] + u1[i + 1])) - self.wind[0];
-            let vy = 0.25 * ((v0[i] + v0[i + 1]) + (v1[i] + v1[i + 1])) - self.wind[1];
-            let vz = 0.25 * ((w0[i] + w0[i + 1]) + (w1[i] + w1[i + 1])) - self.wind[2];
-            let across = nx * vx + ny * vy + nz * vz;
-            let (area2, speed2) = (nx * nx + ny * ny + nz * nz, vx * vx + vy * vy + vz * vz);
-            let inverse = 0.25 * ((m0[i] + m0[i + 1]) + (m1[i] + m1[i + 1]));
-            let rate = self.half_density * across.abs();
-            let limit = self.limit / max(inverse, HELD);
-            let lift = min(self.lift * rate, limit);
-            let drag = min(max(self.drag * rate, lift * lift * (self.dt * inverse)), limit);
-            // 1 / (A |v|)
-            let scale = 1.0 / sqrt(max(area2 * speed2, TINY));
-            let along = drag - lift * (scale * across.abs());
-            let side = if across > 0.0 { lift } else { -lift };
-            let normal = side * (scale * speed2);
-            ox[i] = -(along * vx + normal * nx);
-            oy[i] = -(along * vy + normal * ny);
-            oz[i] = -(along * vz + normal * nz);
-        }
-        Some([ox, oy, oz])
+    /// Minus the forces on some cells by their area vectors, velocities and the means of 1/M of their corners.
+    #[inline(always)]
+    fn against<V: Vector>(&self, zero: V, area: Three<V>, v: Three<V>, inverse: V) -> Three<V> {
+        let v = v.minus(Three([zero.all(self.wind[0]), zero.all(self.wind[1]), zero.all(self.wind[2])]));
+        let across = area.dot(v);
+        let (area2, speed2) = (area.squared(), v.squared());
+        let rate = zero.all(self.half_density) * across.abs();
+        let limit = zero.all(self.limit) / inverse.max(zero.all(HELD));
+        let lift = (zero.all(self.lift) * rate).min(limit);
+        let drag = (zero.all(self.drag) * rate).max(lift * lift * (zero.all(self.dt) * inverse)).min(limit);
+        // 1 / (A |v|)
+        let scale = zero.all(1.0) / (area2 * speed2).max(zero.all(TINY)).sqrt();
+        let along = drag - lift * (scale * across.abs());
+        let side = across.above(zero, lift, zero - lift);
+        v.times(along).plus(area.times(side * (scale * speed2)))
     }
 }
 
-/// There are so many cells, and one that lacks a corner is none.
-fn drop_absent(forces: &mut Forces, mask: &[f32], at: usize, stride: usize, cells: usize) {
-    if cells < LANES {
-        for plane in &mut *forces {
-            plane.iter_mut().skip(cells).for_each(|f| *f = 0.0);
-        }
+/// The numbers of three planes at the corners of the cells of a block.
+#[derive(Clone, Copy)]
+struct Corners<'p> {
+    upper: [&'p [f32; LANES + 1]; 3],
+    lower: [&'p [f32; LANES + 1]; 3],
+}
+
+impl<'p> Corners<'p> {
+    /// None where a plane ends before.
+    #[inline(always)]
+    fn new(planes: View<'p>, at: usize, stride: usize) -> Option<Corners<'p>> {
+        let below = at.wrapping_add(stride);
+        Some(Corners {
+            upper: [block(planes.x, at)?, block(planes.y, at)?, block(planes.z, at)?],
+            lower: [block(planes.x, below)?, block(planes.y, below)?, block(planes.z, below)?],
+        })
     }
-    if mask.is_empty() {
-        return;
+
+    /// Upper left, upper right, lower left, lower right of the cells from one on.
+    #[inline(always)]
+    fn read<V: Vector>(&self, zero: V, lane: usize) -> [Three<V>; 4] {
+        let at = |planes: [&'p [f32; LANES + 1]; 3]| planes.map(|p| &p[..]);
+        let (upper, lower) = (at(self.upper), at(self.lower));
+        [
+            Three::read(zero, upper, lane),
+            Three::read(zero, upper, lane + 1),
+            Three::read(zero, lower, lane),
+            Three::read(zero, lower, lane + 1),
+        ]
     }
-    for by in [0, 1, stride, stride + 1] {
-        for plane in &mut *forces {
-            for (f, present) in plane.iter_mut().zip(span(mask, at + by, LANES)) {
-                *f *= present;
+}
+
+/// Adds the forces of the air to those on the particles.
+struct Blow<'p> {
+    layout: &'p Layout,
+    flow: Flow,
+    x: View<'p>,
+    v: View<'p>,
+    inverse: &'p [f32],
+    mask: &'p [f32],
+    force: [&'p mut [f32]; 3],
+}
+
+impl Pass for Blow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self, zero: V) {
+        // a row has one cell less than particles
+        let cells = self.layout.columns.saturating_sub(1);
+        for row in 1..self.layout.rows {
+            let mut first = 0;
+            while first < cells {
+                self.block(zero, self.layout.at(row - 1, first), cells - first);
+                first += LANES;
             }
         }
     }
 }
 
-/// A quarter of each cell's force to each of its corners.
-fn add_quarters(to: &mut [&mut [f32]; 3], forces: &Forces, at: usize, stride: usize) {
-    for (plane, forces) in to.iter_mut().zip(forces) {
-        let quarters = forces.map(|f| 0.25 * f);
-        // of the cell on the left of a particle and that on its right
-        let mut sums = [0.0; LANES + 1];
-        for (sum, f) in sums.iter_mut().skip(1).zip(&quarters) {
-            *sum = *f;
-        }
-        for (sum, f) in sums.iter_mut().zip(&quarters) {
-            *sum += f;
-        }
-        for row in [at, at + stride] {
-            if let Some(to) = block_mut::<{ LANES + 1 }>(plane, row) {
-                for (to, sum) in to.iter_mut().zip(&sums) {
-                    *to += sum;
-                }
+impl Blow<'_> {
+    /// The forces of the cells of a block, of which there are `cells`, from the one whose upper left corner is at a place: a
+    /// quarter to each corner.
+    #[inline(always)]
+    fn block<V: Vector>(&mut self, zero: V, at: usize, cells: usize) {
+        let stride = self.layout.stride;
+        let below = at.wrapping_add(stride);
+        let (x, v) = (Corners::new(self.x, at, stride), Corners::new(self.v, at, stride));
+        let inverse = (block::<{ LANES + 1 }>(self.inverse, at), block::<{ LANES + 1 }>(self.inverse, below));
+        // the planes go on beyond the border by more than a block
+        let (Some(x), Some(v), (Some(w_upper), Some(w_lower))) = (x, v, inverse) else {
+            return;
+        };
+        let quarter = zero.all(0.25);
+        let mut before = Three([zero; 3]);
+        let mut lane = 0;
+        while lane < LANES {
+            let [a, b, c, d] = x.read(zero, lane);
+            let (down, up) = (d.minus(a), c.minus(b));
+            let area = down.cross(up).times(zero.all(0.5));
+            let [a, b, c, d] = v.read(zero, lane);
+            let velocity = a.plus(b).plus(c.plus(d)).times(quarter);
+            let upper = zero.read(w_upper, lane) + zero.read(w_upper, lane + 1);
+            let lower = zero.read(w_lower, lane) + zero.read(w_lower, lane + 1);
+            let against = self.flow.against(zero, area, velocity, quarter * (upper + lower));
+            let mut force = Three([zero; 3]).minus(against);
+            // there are so many cells, and one that lacks a corner is none
+            if cells < LANES {
+                force = Three::choose(zero.all(cells as f32), zero.read(&NUMBERS, lane), force, Three([zero; 3]));
             }
+            if !self.mask.is_empty() {
+                let (upper, lower) = (at.wrapping_add(lane), below.wrapping_add(lane));
+                let above = zero.read(self.mask, upper) * zero.read(self.mask, upper.wrapping_add(1));
+                force =
+                    force.times(above * (zero.read(self.mask, lower) * zero.read(self.mask, lower.wrapping_add(1))));
+            }
+            let force = force.times(quarter);
+            // of the cell on the left of a particle and that on its right
+            let sum = force.next1(before).plus(force);
+            self.add(zero, sum, at.wrapping_add(lane));
+            before = force;
+            lane += V::LANES;
+        }
+        // of the last cell to the particle behind it
+        self.add(zero, Three([zero; 3]).next1(before), at.wrapping_add(LANES));
+    }
+
+    /// Adds forces to the particles from a place on and to those below.
+    #[inline(always)]
+    fn add<V: Vector>(&mut self, zero: V, force: Three<V>, at: usize) {
+        for at in [at, at.wrapping_add(self.layout.stride)] {
+            let [x, y, z] = &mut self.force;
+            Three::read(zero, [x, y, z], at).plus(force).write([x, y, z], at);
         }
     }
 }

@@ -86,24 +86,25 @@ pub(crate) struct Sweep<'a, 'b> {
 }
 
 /// Where the numbers of a sweep lie, column 0 of row 0 of each plane.
-struct Pointers {
-    x: [*mut f32; 3],
-    v: [*mut f32; 3],
-    u: *const f32,
-    v_down: *const f32,
-    right: *const f32,
-    left: *const f32,
-    bend_u: *const f32,
-    bend_v: *const f32,
-    inverse: *const f32,
-    pull: Option<[*const f32; 3]>,
-    carry: *mut f32,
+#[derive(Clone, Copy)]
+pub(crate) struct Pointers {
+    pub x: [*mut f32; 3],
+    pub v: [*mut f32; 3],
+    pub u: *const f32,
+    pub v_down: *const f32,
+    pub right: *const f32,
+    pub left: *const f32,
+    pub bend_u: *const f32,
+    pub bend_v: *const f32,
+    pub inverse: *const f32,
+    pub pull: Option<[*const f32; 3]>,
+    pub carry: *mut f32,
 }
 
 impl Pointers {
     /// Column 0 of three rows of carry.
     #[inline(always)]
-    fn carried(&self, row: usize, stride: usize) -> [*mut f32; 3] {
+    pub fn carried(&self, row: usize, stride: usize) -> [*mut f32; 3] {
         let first = self.carry.wrapping_add(row.wrapping_mul(stride).wrapping_add(16));
         [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
     }
@@ -111,7 +112,7 @@ impl Pointers {
 
 impl Sweep<'_, '_> {
     /// None where a plane is too short. A plane holds `row(rows + 2)` numbers and 16 more than a row: see [`Layout`].
-    fn pointers(&mut self) -> Option<Pointers> {
+    pub fn pointers(&mut self) -> Option<Pointers> {
         let l = &self.layout;
         let first = l.row(0);
         let read = |plane: &[f32], on: bool| match plane.get(first..l.plane) {
@@ -150,40 +151,16 @@ impl Sweep<'_, '_> {
         let Some(p) = self.pointers() else {
             return;
         };
-        let (l, c) = (self.layout, self.constants);
-        let k = Constants {
-            rest_u: zero.all(c.rest_u),
-            rest_v: zero.all(c.rest_v),
-            rest_diagonal: zero.all(c.rest_diagonal),
-            bend_u: zero.all(2.0 * c.rest_u),
-            bend_v: zero.all(2.0 * c.rest_v),
-            floor: zero.all(c.floor),
-            tiny: zero.all(TINY),
-            one: zero.all(1.0),
-            damping: zero.all(c.damping),
-            dt: zero.all(c.dt),
-            weight: Three([zero.all(c.weight[0]), zero.all(c.weight[1]), zero.all(c.weight[2])]),
-            limited: c.speed < f32::INFINITY,
-            speed: zero.all(c.speed),
-            speed2: zero.all(c.speed * c.speed),
-        };
+        let l = self.layout;
+        let k = Constants::new(zero, self.constants);
         // whole vectors: at most the padded width
         let n = l.columns.div_ceil(V::LANES) * V::LANES;
-        let nothing = Begun { d: Three([zero; 3]), ratio: zero };
         // SAFETY: `pointers` has checked the lengths. Rows 0 to rows - 1 are begun and swept: the largest place that is
         // read is that of the bend springs along v, n numbers from row(row + 2) on, or two numbers beyond n in the rows
         // row and row + 1; the least is row(1) - 1. The rows of carry are read one number before and beyond n, which is
         // in their spare 16.
         unsafe {
-            let here = Three::load(zero, &p.x, 0);
-            let mut s = Springs6 {
-                right: begin(&k, &p, here, 1, k.rest_u),
-                below: begin(&k, &p, here, l.stride, k.rest_v),
-                lower_right: if SHEAR { begin(&k, &p, here, l.stride + 1, k.rest_diagonal) } else { nothing },
-                lower_left: if SHEAR { begin(&k, &p, here, l.stride - 1, k.rest_diagonal) } else { nothing },
-                two_right: if BEND { begin(&k, &p, here, 2, k.bend_u) } else { nothing },
-                two_below: if BEND { begin(&k, &p, here, 2 * l.stride, k.bend_v) } else { nothing },
-            };
+            let mut s = Springs6::new::<SHEAR, BEND>(zero, &p, &k, 0, l.stride);
             for row in 0..l.rows {
                 // after the last row the first vector of it is begun once more, for nobody
                 let next = if row + 1 < l.rows { row + 1 } else { row };
@@ -208,12 +185,12 @@ impl Pass for Sweep<'_, '_> {
 }
 
 /// [`Substep`] in every lane.
-struct Constants<V> {
-    rest_u: V,
-    rest_v: V,
-    rest_diagonal: V,
-    bend_u: V,
-    bend_v: V,
+pub(crate) struct Constants<V> {
+    pub rest_u: V,
+    pub rest_v: V,
+    pub rest_diagonal: V,
+    pub bend_u: V,
+    pub bend_v: V,
     floor: V,
     tiny: V,
     one: V,
@@ -225,12 +202,62 @@ struct Constants<V> {
     speed2: V,
 }
 
+impl<V: Vector> Constants<V> {
+    #[inline(always)]
+    pub fn new(zero: V, c: &Substep) -> Constants<V> {
+        Constants {
+            rest_u: zero.all(c.rest_u),
+            rest_v: zero.all(c.rest_v),
+            rest_diagonal: zero.all(c.rest_diagonal),
+            bend_u: zero.all(2.0 * c.rest_u),
+            bend_v: zero.all(2.0 * c.rest_v),
+            floor: zero.all(c.floor),
+            tiny: zero.all(TINY),
+            one: zero.all(1.0),
+            damping: zero.all(c.damping),
+            dt: zero.all(c.dt),
+            weight: Three([zero.all(c.weight[0]), zero.all(c.weight[1]), zero.all(c.weight[2])]),
+            limited: c.speed < f32::INFINITY,
+            speed: zero.all(c.speed),
+            speed2: zero.all(c.speed * c.speed),
+        }
+    }
+
+    /// The end of the substep of a vector of particles: v += a dt with a = f / M - c v, then the speed limit, then
+    /// x += v dt. `f` are the forces of the springs.
+    ///
+    /// # Safety
+    /// The planes have the lanes from the place on, and nobody else uses them.
+    #[inline(always)]
+    pub unsafe fn advance(&self, zero: V, p: &Pointers, at: usize, f: Three<V>) {
+        // SAFETY: the caller's promise.
+        unsafe {
+            let mut f = f.plus(self.weight);
+            if let Some([x, y, z]) = p.pull {
+                f = f.plus(Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]));
+            }
+            let w = load(zero, p.inverse, at);
+            let v = Three::load(zero, &p.v, at);
+            let mut v = v.plus(f.times(w).minus(v.times(self.damping)).times(self.dt));
+            if self.limited {
+                let squared = v.squared();
+                // Below the limit the factor is 1: sqrt(a^2) is a where a^2 is a normal number, as a limit's always is.
+                if squared.any_above(self.speed2) {
+                    v = v.times(self.speed / squared.max(self.speed2).sqrt());
+                }
+            }
+            v.store(&p.v, at);
+            Three::load(zero, &p.x, at).plus(v.times(self.dt)).store(&p.x, at);
+        }
+    }
+}
+
 /// A spring of each lane on its way: the difference of its ends and L0/l.
 ///
 /// Square root and division take tens of cycles, in which a processor can work on others only if few instructions wait for
 /// them. So these two are begun a vector of particles ahead, and nothing after them waits in the processor's queues.
 #[derive(Clone, Copy)]
-struct Begun<V> {
+pub(crate) struct Begun<V> {
     d: Three<V>,
     ratio: V,
 }
@@ -244,14 +271,14 @@ impl<V: Vector> Begun<V> {
 
     /// The force on the end that the spring starts at (eq. 1): k (1 - L0/l) d.
     #[inline(always)]
-    fn force(self, c: &Constants<V>, k: V) -> Three<V> {
+    pub fn force(self, c: &Constants<V>, k: V) -> Three<V> {
         self.d.times(k * (c.one - self.ratio).max(c.floor))
     }
 }
 
 /// The springs that start at each particle of a vector. Those of a family that is off hold nothing of use.
 #[derive(Clone, Copy)]
-struct Springs6<V> {
+pub(crate) struct Springs6<V> {
     right: Begun<V>,
     below: Begun<V>,
     lower_right: Begun<V>,
@@ -260,12 +287,48 @@ struct Springs6<V> {
     two_below: Begun<V>,
 }
 
+impl<V: Vector> Springs6<V> {
+    /// The springs of the first vector of a row, begun; `first` is the place of its column 0.
+    ///
+    /// # Safety
+    /// As [`sweep_row`].
+    #[inline(always)]
+    pub unsafe fn new<const SHEAR: bool, const BEND: bool>(
+        zero: V,
+        p: &Pointers,
+        k: &Constants<V>,
+        first: usize,
+        stride: usize,
+    ) -> Springs6<V> {
+        let nothing = Begun { d: Three([zero; 3]), ratio: zero };
+        let [down, two_down] = [first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))];
+        // SAFETY: the caller's promise.
+        unsafe {
+            let here = Three::load(zero, &p.x, first);
+            Springs6 {
+                right: begin(k, p, here, first.wrapping_add(1), k.rest_u),
+                below: begin(k, p, here, down, k.rest_v),
+                lower_right: if SHEAR { begin(k, p, here, down.wrapping_add(1), k.rest_diagonal) } else { nothing },
+                lower_left: if SHEAR { begin(k, p, here, down.wrapping_sub(1), k.rest_diagonal) } else { nothing },
+                two_right: if BEND { begin(k, p, here, first.wrapping_add(2), k.bend_u) } else { nothing },
+                two_below: if BEND { begin(k, p, here, two_down, k.bend_v) } else { nothing },
+            }
+        }
+    }
+}
+
 /// Begins the springs of one direction, from particles `here` to those from the place `there` on.
 ///
 /// # Safety
 /// The places that [`Sweep::families`] names are inside the planes.
 #[inline(always)]
-unsafe fn begin<V: Vector>(c: &Constants<V>, p: &Pointers, here: Three<V>, there: usize, rest: V) -> Begun<V> {
+pub(crate) unsafe fn begin<V: Vector>(
+    c: &Constants<V>,
+    p: &Pointers,
+    here: Three<V>,
+    there: usize,
+    rest: V,
+) -> Begun<V> {
     // SAFETY: the caller's promise.
     Begun::new(c, here, unsafe { Three::load(c.one, &p.x, there) }, rest)
 }
@@ -277,7 +340,7 @@ unsafe fn begin<V: Vector>(c: &Constants<V>, p: &Pointers, here: Three<V>, there
 /// The places that [`Sweep::families`] names are inside the planes.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
+pub(crate) unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
     zero: V,
     p: &Pointers,
     c: &Constants<V>,
@@ -340,23 +403,7 @@ unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
                 f = f.plus(e).minus(Three::load(zero, &two_below, column));
                 e.store(&two_below, column);
             }
-            f = f.plus(c.weight);
-            if let Some([x, y, z]) = p.pull {
-                f = f.plus(Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]));
-            }
-            // v += a dt with a = f / M - c v, then the speed limit, then x += v dt
-            let w = load(zero, p.inverse, at);
-            let v = Three::load(zero, &p.v, at);
-            let mut v = v.plus(f.times(w).minus(v.times(c.damping)).times(c.dt));
-            if c.limited {
-                let squared = v.squared();
-                // Below the limit the factor is 1: sqrt(a^2) is a where a^2 is a normal number, as a limit's always is.
-                if squared.any_above(c.speed2) {
-                    v = v.times(c.speed / squared.max(c.speed2).sqrt());
-                }
-            }
-            v.store(&p.v, at);
-            Three::load(zero, &p.x, at).plus(v.times(c.dt)).store(&p.x, at);
+            c.advance(zero, p, at, f);
         }
         column = ahead;
     }

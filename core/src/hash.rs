@@ -46,6 +46,21 @@ impl Hash64 {
         self.words(&[u32::from_le_bytes(last), bytes.len() as u32]);
     }
 
+    /// Adds many bytes in words of 64 bits, twice as fast as [`Hash64::bytes`] and another hash. The rotation brings the upper
+    /// bits of a word, which a product only moves up, to all others.
+    pub fn bulk(&mut self, bytes: &[u8]) {
+        let (blocks, rest) = bytes.as_chunks::<64>();
+        let mut lanes = self.lanes;
+        for block in blocks {
+            for (lane, word) in lanes.iter_mut().zip(block.as_chunks::<8>().0) {
+                *lane = (*lane ^ u64::from_le_bytes(*word)).wrapping_mul(PRIME).rotate_left(29);
+            }
+        }
+        self.lanes = lanes;
+        self.count = self.count.wrapping_add(blocks.len() as u64);
+        self.bytes(rest);
+    }
+
     #[inline(always)]
     fn each<T>(&mut self, items: &[T], bits: impl Fn(&T) -> u32) {
         let (blocks, rest) = items.as_chunks::<8>();
@@ -77,6 +92,32 @@ impl Hash64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_bit_counts_in_bulk_and_two_do_not_cancel() {
+        let hash = |b: &[u8]| {
+            let mut h = Hash64::new();
+            h.bulk(b);
+            h.finish()
+        };
+        let base: [u8; 203] = core::array::from_fn(|i| (i * 37) as u8);
+        let h = hash(&base);
+        let flipped = |bits: &[usize]| {
+            let mut other = base;
+            bits.iter().for_each(|bit| other[bit / 8] ^= 1 << (bit % 8));
+            hash(&other)
+        };
+        for i in 0..8 * base.len() {
+            assert_ne!(flipped(&[i]), h, "bit {i}");
+            // the same place of a later word of the same lane
+            if i + 512 < 8 * base.len() {
+                assert_ne!(flipped(&[i, i + 512]), h, "bits {i} and {}", i + 512);
+            }
+        }
+        for length in 0..base.len() {
+            assert_ne!(hash(&base[..length]), h, "{length} bytes");
+        }
+    }
 
     #[test]
     fn every_word_and_place_counts() {

@@ -19,11 +19,10 @@
 //! Stability: (a - 2 b + c)^2 <= 4 (a^2 + 2 b^2 + c^2) and (a - b - c + d)^2 <= 4 (a^2 + b^2 + c^2 + d^2), so the hinges add
 //! at most 16 (u + v + twist) to what the springs put on a particle, in any shape and with any pins.
 
-use crate::layout::{Layout, block, block_mut};
-use crate::{Cloth, ClothDef, Grid};
-
-/// Particles of a row that are worked on at a time. Beyond the border the weights are 0.
-const LANES: usize = 16;
+use crate::around::{Around, LANES};
+use crate::layout::Layout;
+use crate::simd::{Pass, Vector};
+use crate::{Cloth, ClothDef, Grid, simd};
 
 /// Factors of the terms in N/m. In f64, where those of the smallest cells are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,26 +65,15 @@ impl Cloth<'_> {
         if k.u == 0.0 && k.v == 0.0 && k.twist == 0.0 {
             return;
         }
-        let planes = [&*self.x.x, &*self.x.y, &*self.x.z];
-        for first in (0..l.columns).step_by(LANES) {
-            let columns = Columns::new(&l, first, &k);
-            for row in 0..l.rows {
-                let (at, rows) = (l.at(row, first), Rows::new(&l, row, &k));
-                for (x, force) in planes.into_iter().zip(&mut self.force) {
-                    // the planes have room for whole blocks
-                    let (Some(x), Some(to)) = (Around::new(x, at, l.stride), block_mut::<LANES>(force, at)) else {
-                        continue;
-                    };
-                    let forces = match Around::new(self.mask, at, l.stride) {
-                        Some(mask) => masked(&x, &mask, &k),
-                        None => full(&x, &rows, &columns),
-                    };
-                    for (to, f) in to.iter_mut().zip(&forces) {
-                        *to += f;
-                    }
-                }
-            }
-        }
+        let [x, y, z] = &mut self.force;
+        let bend = Bend {
+            layout: &l,
+            factors: k,
+            x: [&*self.x.x, &*self.x.y, &*self.x.z],
+            mask: self.mask,
+            force: [&mut **x, &mut **y, &mut **z],
+        };
+        simd::run(self.width, bend);
     }
 }
 
@@ -99,75 +87,64 @@ struct Factors {
 
 /// The factors of the ten terms that a particle belongs to, 0 for those that lack a particle: the differences along u around
 /// the particles before, here and behind; the same along v; the cells to the lower right, lower left, upper right, upper left.
-struct Weights {
-    u: [f32; 3],
-    v: [f32; 3],
-    twist: [f32; 4],
+#[derive(Clone, Copy)]
+struct Weights<V> {
+    u: [V; 3],
+    v: [V; 3],
+    twist: [V; 4],
 }
 
-impl Weights {
-    /// `p` is 1 where there is a particle (rows and columns from here), else 0.
+impl<V: Vector> Weights<V> {
+    /// Of the particles from a lane on, by where there are particles.
     #[inline(always)]
-    fn new(k: &Factors, p: impl Fn(isize, isize) -> f32) -> Weights {
-        let along_u = |j: isize| k.u * (p(0, j - 1) * p(0, j) * p(0, j + 1));
-        let along_v = |i: isize| k.v * (p(i - 1, 0) * p(i, 0) * p(i + 1, 0));
-        let cell = |i: isize, j: isize| k.twist * (p(0, 0) * p(0, j) * (p(i, 0) * p(i, j)));
+    fn masked(zero: V, k: &Factors, mask: &Around<'_>, lane: usize) -> Weights<V> {
+        let (u, v, twist) = (zero.all(k.u), zero.all(k.v), zero.all(k.twist));
+        let [l2, l1, here, r1, r2] = mask.row(zero, lane);
+        let [u1, d1] = mask.beside(zero, lane, 0);
+        let [u2, d2] = mask.two_on(zero, lane);
+        let ([ul, dl], [ur, dr]) = (mask.beside(zero, lane, -1), mask.beside(zero, lane, 1));
         Weights {
-            u: [along_u(-1), along_u(0), along_u(1)],
-            v: [along_v(-1), along_v(0), along_v(1)],
-            twist: [cell(1, 1), cell(1, -1), cell(-1, 1), cell(-1, -1)],
+            u: [u * (l2 * l1 * here), u * (l1 * here * r1), u * (here * r1 * r2)],
+            v: [v * (u2 * u1 * here), v * (u1 * here * d1), v * (here * d1 * d2)],
+            twist: [
+                twist * (here * r1 * (d1 * dr)),
+                twist * (here * l1 * (d1 * dl)),
+                twist * (here * r1 * (u1 * ur)),
+                twist * (here * l1 * (u1 * ul)),
+            ],
         }
     }
 
-    /// The force on a particle by the positions around it (rows and columns from here). Differences of neighbours come first:
-    /// they are nearly exact, where a sum of thirteen large positions would not be.
+    /// Of the particles of a full grid.
     #[inline(always)]
-    fn force(&self, x: impl Fn(isize, isize) -> f32) -> f32 {
-        let along_u = |i: isize, j: isize| x(i, j + 1) - x(i, j);
-        let along_v = |i: isize| x(i + 1, 0) - x(i, 0);
-        let (e0, e1, e2, e3) = (along_u(0, -2), along_u(0, -1), along_u(0, 0), along_u(0, 1));
-        let (g0, g1, g2, g3) = (along_v(-2), along_v(-1), along_v(0), along_v(1));
-        let [u0, u1, u2] = self.u;
-        let [v0, v1, v2] = self.v;
-        let [t0, t1, t2, t3] = self.twist;
-        let u = 2.0 * u1 * (e2 - e1) - u0 * (e1 - e0) - u2 * (e3 - e2);
-        let v = 2.0 * v1 * (g2 - g1) - v0 * (g1 - g0) - v2 * (g3 - g2);
-        let below = t1 * (along_u(1, -1) - e1) - t0 * (along_u(1, 0) - e2);
-        let above = t2 * (e2 - along_u(-1, 0)) - t3 * (e1 - along_u(-1, -1));
+    fn full(zero: V, rows: &Rows, columns: &Columns, lane: usize) -> Weights<V> {
+        let ([u0, u1, u2], [v0, v1, v2]) = (&columns.u, rows.v);
+        let (right, left) = (zero.read(&columns.right, lane), zero.read(&columns.left, lane));
+        let (below, above) = (zero.all(rows.below), zero.all(rows.above));
+        Weights {
+            u: [zero.read(u0, lane), zero.read(u1, lane), zero.read(u2, lane)],
+            v: [zero.all(v0), zero.all(v1), zero.all(v2)],
+            twist: [below * right, below * left, above * right, above * left],
+        }
+    }
+
+    /// The forces on the particles from a lane on along one axis, by the positions around them. Differences of neighbours
+    /// come first: they are nearly exact, where a sum of thirteen large positions would not be.
+    #[inline(always)]
+    fn force(&self, zero: V, x: &Around<'_>, lane: usize) -> V {
+        let two = zero.all(2.0);
+        let [l2, l1, here, r1, r2] = x.row(zero, lane);
+        let [u1, d1] = x.beside(zero, lane, 0);
+        let [u2, d2] = x.two_on(zero, lane);
+        let ([ul, dl], [ur, dr]) = (x.beside(zero, lane, -1), x.beside(zero, lane, 1));
+        let (e0, e1, e2, e3) = (l1 - l2, here - l1, r1 - here, r2 - r1);
+        let (g0, g1, g2, g3) = (u1 - u2, here - u1, d1 - here, d2 - d1);
+        let ([uw0, uw1, uw2], [vw0, vw1, vw2], [t0, t1, t2, t3]) = (self.u, self.v, self.twist);
+        let u = two * uw1 * (e2 - e1) - uw0 * (e1 - e0) - uw2 * (e3 - e2);
+        let v = two * vw1 * (g2 - g1) - vw0 * (g1 - g0) - vw2 * (g3 - g2);
+        let below = t1 * ((d1 - dl) - e1) - t0 * ((dr - d1) - e2);
+        let above = t2 * (e2 - (ur - u1)) - t3 * (e1 - (u1 - ul));
         (u + v) + (below + above)
-    }
-}
-
-/// The numbers of a plane at [`LANES`] particles of a row and at what their terms reach.
-struct Around<'a> {
-    here: &'a [f32; LANES + 4],
-    above: [&'a [f32; LANES + 2]; 2],
-    far: [&'a [f32; LANES]; 2],
-}
-
-impl<'a> Around<'a> {
-    /// None where the plane ends before.
-    #[inline(always)]
-    fn new(plane: &'a [f32], at: usize, stride: usize) -> Option<Around<'a>> {
-        Some(Around {
-            here: block(plane, at.wrapping_sub(2))?,
-            above: [block(plane, at.wrapping_sub(stride + 1))?, block(plane, at.wrapping_add(stride - 1))?],
-            far: [block(plane, at.wrapping_sub(2 * stride))?, block(plane, at.wrapping_add(2 * stride))?],
-        })
-    }
-
-    /// The number so many rows and columns from a particle.
-    #[inline(always)]
-    fn at(&self, particle: usize, i: isize, j: isize) -> f32 {
-        let [up, down] = self.above;
-        let [far_up, far_down] = self.far;
-        match i {
-            -2 => far_up[particle],
-            -1 => up[particle.wrapping_add_signed(j + 1)],
-            0 => self.here[particle.wrapping_add_signed(j + 2)],
-            1 => down[particle.wrapping_add_signed(j + 1)],
-            _ => far_down[particle],
-        }
     }
 }
 
@@ -213,48 +190,77 @@ impl Rows {
         let v = |i: isize| k.v * (p(i - 1) * p(i) * p(i + 1));
         Rows { v: [v(-1), v(0), v(1)], below: k.twist * p(1), above: k.twist * p(-1) }
     }
+}
+
+/// Adds the forces of the hinges to those on the particles.
+struct Bend<'p> {
+    layout: &'p Layout,
+    factors: Factors,
+    x: [&'p [f32]; 3],
+    mask: &'p [f32],
+    force: [&'p mut [f32]; 3],
+}
+
+impl Pass for Bend<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn weights(&self, columns: &Columns, c: usize) -> Weights {
-        let [u0, u1, u2] = &columns.u;
-        let (right, left) = (columns.right[c], columns.left[c]);
-        Weights {
-            u: [u0[c], u1[c], u2[c]],
-            v: self.v,
-            twist: [self.below * right, self.below * left, self.above * right, self.above * left],
+    fn run<V: Vector>(mut self, zero: V) {
+        let (l, k) = (self.layout, self.factors);
+        let blocks = l.width / LANES;
+        // the first block, one between, the last but one and the last: all that differ
+        let last = l.width.saturating_sub(LANES);
+        let columns = [0, LANES, last.saturating_sub(LANES), last].map(|first| Columns::new(l, first, &k));
+        let [first, between, last_but_one, last] = &columns;
+        for row in 0..l.rows {
+            let rows = Rows::new(l, row, &k);
+            for block in 0..blocks {
+                let columns = match blocks - block {
+                    _ if block == 0 => first,
+                    1 => last,
+                    2 => last_but_one,
+                    _ => between,
+                };
+                self.block(zero, l.at(row, block * LANES), &rows, columns);
+            }
         }
     }
 }
 
-/// The forces on the particles of a block of a full grid.
-#[inline(never)]
-fn full(x: &Around<'_>, rows: &Rows, columns: &Columns) -> [f32; LANES] {
-    let mut forces = [0.0; LANES];
-    for c in 0..LANES {
-        forces[c] = rows.weights(columns, c).force(|i, j| x.at(c, i, j));
+impl Bend<'_> {
+    /// The particles of a block.
+    #[inline(always)]
+    fn block<V: Vector>(&mut self, zero: V, at: usize, rows: &Rows, columns: &Columns) {
+        let stride = self.layout.stride;
+        let mask = Around::new(self.mask, at, stride);
+        let mut lane = 0;
+        while lane < LANES {
+            let weights = match &mask {
+                Some(mask) => Weights::masked(zero, &self.factors, mask, lane),
+                None => Weights::full(zero, rows, columns, lane),
+            };
+            for (x, force) in self.x.into_iter().zip(&mut self.force) {
+                // the planes have room for whole blocks
+                if let Some(x) = Around::new(x, at, stride) {
+                    let at = at.wrapping_add(lane);
+                    (zero.read(force, at) + weights.force(zero, &x, lane)).write(force, at);
+                }
+            }
+            lane += V::LANES;
+        }
     }
-    forces
-}
-
-/// The same where some particles are absent. `mask` is 1 for a particle and 0 elsewhere.
-#[inline(never)]
-fn masked(x: &Around<'_>, mask: &Around<'_>, k: &Factors) -> [f32; LANES] {
-    let mut forces = [0.0; LANES];
-    for c in 0..LANES {
-        forces[c] = Weights::new(k, |i, j| mask.at(c, i, j)).force(|i, j| x.at(c, i, j));
-    }
-    forces
 }
 
 #[cfg(test)]
 mod tests {
     extern crate std;
 
-    use std::vec;
     use std::vec::Vec;
+    use std::{println, vec};
 
     use super::*;
-    use crate::{Features, GridDef, noise};
+    use crate::width::Supported;
+    use crate::{Features, GridDef, Width, noise};
 
     const K: Factors = Factors { u: 3.0, v: 2.0, twist: 5.0 };
 
@@ -274,20 +280,26 @@ mod tests {
         plane
     }
 
-    /// The forces on all particles, by the mask or as a full grid.
+    /// The forces on all particles along one axis, by the mask or as a full grid; the same in every width.
     fn forces(l: &Layout, x: &[f32], mask: Option<&[f32]>) -> Vec<f32> {
-        let mut force = vec![0.0; l.plane];
-        for first in (0..l.columns).step_by(LANES) {
-            for row in 0..l.rows {
-                let at = l.at(row, first);
-                let (x, to) = (Around::new(x, at, l.stride).unwrap(), block_mut::<LANES>(&mut force, at).unwrap());
-                *to = match mask {
-                    Some(mask) => masked(&x, &Around::new(mask, at, l.stride).unwrap(), &K),
-                    None => full(&x, &Rows::new(l, row, &K), &Columns::new(l, first, &K)),
-                };
+        let in_width = |width: Width| {
+            let (mut force, mut y, mut z) = (vec![0.0; l.plane], vec![0.0; l.plane], vec![0.0; l.plane]);
+            let mask = mask.unwrap_or(&[]);
+            let force_of = [&mut force[..], &mut y[..], &mut z[..]];
+            let bend = Bend { layout: l, factors: K, x: [x; 3], mask, force: force_of };
+            Supported::new(width).map(|width| simd::run(width, bend)).map(|()| force)
+        };
+        let single = in_width(Width::Scalar).unwrap();
+        for width in Width::ALL {
+            match in_width(width) {
+                Some(force) => {
+                    let bits = |f: &[f32]| f.iter().map(|f| f.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(bits(&force), bits(&single), "{width:?}");
+                }
+                None => println!("SKIPPED: this machine has no {}", width.name()),
             }
         }
-        force
+        single
     }
 
     /// A grid of which only a block is present bends as a grid of that size: no term reaches an absent particle, wherever it is.

@@ -167,12 +167,6 @@ pub(crate) fn block<const N: usize>(plane: &[f32], at: usize) -> Option<&[f32; N
     plane.get(at..)?.first_chunk()
 }
 
-/// The same, for writing.
-#[inline(always)]
-pub(crate) fn block_mut<const N: usize>(plane: &mut [f32], at: usize) -> Option<&mut [f32; N]> {
-    plane.get_mut(at..)?.first_chunk_mut()
-}
-
 /// The number at a place, 0 outside.
 #[inline(always)]
 pub(crate) fn read(plane: &[f32], at: usize) -> f32 {

@@ -27,7 +27,9 @@
 
 mod air;
 mod ambient;
+mod around;
 pub mod baked;
+mod bands;
 mod bounds;
 mod budget;
 mod cloth;
@@ -45,7 +47,6 @@ mod hash;
 mod hinge;
 mod implicit;
 mod inertia;
-mod lanes;
 mod layout;
 mod levels;
 mod limit;
@@ -76,6 +77,7 @@ mod width;
 mod within;
 
 pub use air::Air;
+pub use bands::{Bands, LEAST_BAND_ROWS};
 pub use bounds::Bounds;
 pub use budget::{BEND_SHARE, BudgetReport, CERTIFIED_SHARE, HINGE_SHARE, TUNED_SHARE};
 pub use cloth::{Cloth, PositionView};

@@ -18,10 +18,30 @@ pub(crate) struct Pin {
     pub to: [f32; 3],
 }
 
+/// The pin of a number among [`Pins::numbers`].
+pub(crate) fn pin_of(numbers: &[f32], i: usize) -> Pin {
+    let n = |j: usize| read(numbers, i * PIN_NUMBERS + j);
+    Pin { particle: n(0) as usize, from: [n(1), n(2), n(3)], to: [n(4), n(5), n(6)] }
+}
+
+impl Pin {
+    /// Where it is at `share` (0 to 1) of the frame, and how fast it goes.
+    pub fn at(&self, share: f32, rate_hz: f32) -> ([f32; 3], [f32; 3]) {
+        let (mut here, mut velocity) = (self.to, [0.0; 3]);
+        for a in 0..3 {
+            let way = self.to[a] - self.from[a];
+            if share < 1.0 {
+                here[a] = self.from[a] + way * share;
+            }
+            velocity[a] = way * rate_hz;
+        }
+        (here, velocity)
+    }
+}
+
 impl Pins<'_> {
     pub fn get(&self, i: usize) -> Pin {
-        let n = |j: usize| read(self.numbers, i * PIN_NUMBERS + j);
-        Pin { particle: n(0) as usize, from: [n(1), n(2), n(3)], to: [n(4), n(5), n(6)] }
+        pin_of(self.numbers, i)
     }
 
     pub fn set(&mut self, i: usize, pin: Pin) {
@@ -147,19 +167,11 @@ impl Cloth<'_> {
     pub(crate) fn place_pins(&mut self, share: f32) {
         let rate = self.def.rate_hz;
         for i in 0..self.pins.count {
-            let Pin { particle, from, to } = self.pins.get(i);
-            let Ok(at) = self.layout.place(particle) else {
+            let pin = self.pins.get(i);
+            let Ok(at) = self.layout.place(pin.particle) else {
                 continue;
             };
-            let mut here = to;
-            let mut velocity = [0.0; 3];
-            for a in 0..3 {
-                let way = to[a] - from[a];
-                if share < 1.0 {
-                    here[a] = from[a] + way * share;
-                }
-                velocity[a] = way * rate;
-            }
+            let (here, velocity) = pin.at(share, rate);
             self.set_position_at(at, here);
             self.set_velocity_at(at, velocity);
         }

@@ -1,13 +1,15 @@
 //! The planner: which settings a scene requires, and no more.
 //!
-//! For every method (see [`METHODS`]) a law tells the largest structural strain at rest, and a price the cost of a substep in
-//! plain steps; both were fitted to measured rows (`lab/data/plan.csv`, by the lab's example `distill`, which wrote
-//! plan/table.rs). A cloth that is as stiff as its step carries has a strain that depends on its grid and on g dt^2 / L only;
-//! one with the fabric's own stiffness has a strain that is proportional to its weight over its stiffness. The planner
-//! walks the substeps of each method upwards until the law meets the tolerance, and takes the cheapest.
+//! For every method (see [`METHODS`]) it knows the largest structural strain at rest, and the cost of a substep in plain steps;
+//! both were measured (`lab/data/plan.csv`, by the lab's example `distill`, which wrote plan/table.rs). A cloth that is as stiff
+//! as its step carries has a strain that depends on its grid and on g dt^2 / L only, and is looked up between the measured
+//! ones; one with the fabric's own stiffness has a strain that is proportional to its weight over its stiffness, a law with
+//! fitted shares. The planner walks the substeps of each method upwards until the tolerance is met, and takes the cheapest.
 
+mod strains;
 mod table;
 
+use self::strains::Strains;
 use crate::budget::TUNED_SHARE;
 use crate::math::{max, min, sqrt};
 use crate::{ClothDef, Error, Families, Features, Grid, Solver, in_default_environment};
@@ -144,18 +146,9 @@ pub enum Method {
 pub const METHODS: [Method; 6] =
     [Method::Plain, Method::Inertia, Method::Tethers, Method::Levels, Method::Whole, Method::Implicit];
 
-/// ln(strain) of a stiffest cloth = constant + grid ln(n) + step ln(g dt^2 / L), n = cells along the longer side; `margin`
-/// is how far the rows lie above it at most.
-#[derive(Clone, Copy, Debug)]
-struct StepLaw {
-    constant: f32,
-    grid: f32,
-    step: f32,
-    margin: f32,
-}
-
 /// ln(strain) of a cloth of its own stiffness = constant + grid ln(n) + the sum over warp, weft, shear of a share times
-/// ln(weight per area times L / stiffness).
+/// ln(weight per area times L / stiffness), n = cells along the longer side; `margin` is how far the rows lie above it at
+/// most.
 #[derive(Clone, Copy, Debug)]
 struct FabricLaw {
     constant: f32,
@@ -175,13 +168,14 @@ struct Price {
     step: f32,
 }
 
-/// What was measured of a hold. Whole and implicit cloths are both of the fabric's own stiffness.
+/// What was measured of a hold.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    plain: StepLaw,
-    inertia: StepLaw,
-    tethers: StepLaw,
-    fabric: FabricLaw,
+    plain: Strains,
+    inertia: Strains,
+    tethers: Strains,
+    whole: FabricLaw,
+    implicit: FabricLaw,
     plain_price: Price,
     tethers_price: Price,
     levels_price: Price,
@@ -326,11 +320,11 @@ impl Sheet<'_> {
                     return None;
                 }
                 stiffness = PlanStiffness::Fabric;
-                (self.by_fabric(), row.plain_price)
+                (self.by_fabric(&row.whole), row.plain_price)
             }
             Method::Implicit => {
                 (solver, features, stiffness) = (Solver::ImplicitEuler, Features::IMPLICIT, PlanStiffness::Fabric);
-                (self.by_fabric(), row.implicit_price)
+                (self.by_fabric(&row.implicit), row.implicit_price)
             }
         };
         if substeps < LEAST_LIMITED && matches!(method, Method::Tethers | Method::Levels) {
@@ -357,14 +351,11 @@ impl Sheet<'_> {
         })
     }
 
-    fn by_step(&self, law: &StepLaw, substeps: u32) -> f32 {
-        let dt = 1.0 / (self.def.rate_hz * substeps as f32);
-        let group = self.def.gravity_m_s2 * dt * dt / self.side;
-        libm::expf(law.constant + law.grid * libm::logf(self.cells) + law.step * libm::logf(group) + law.margin)
+    fn by_step(&self, strains: &Strains, substeps: u32) -> f32 {
+        strains.at(self.cells, self.def.rate_hz, substeps as f32, self.side, self.def.gravity_m_s2)
     }
 
-    fn by_fabric(&self) -> f32 {
-        let law = &self.row.fabric;
+    fn by_fabric(&self, law: &FabricLaw) -> f32 {
         let weight = self.def.density_kg_m2 * self.def.gravity_m_s2 * self.side;
         let [warp, weft, shear, _] = self.def.stiffness_n_per_m;
         let term = |share: f32, k: f32| share * libm::logf(weight / max(k, 1e-6));

@@ -1,6 +1,7 @@
 //! The shapes of colliders: signed distance and outward normal, each in the frame of its collider. All are convex.
 
 use crate::math::{max, min, sqrt};
+use crate::simd::{Three, Vector};
 use crate::{Error, Vector3};
 
 /// Numbers that a shape is stored as.
@@ -96,6 +97,8 @@ pub(crate) enum Solid {
         /// Of the normal of the side: its part along the axis, and across.
         sine: f32,
         cosine: f32,
+        /// Any direction across the axis.
+        beside: Vector3<f32>,
     },
     /// Outward normal of length 1.
     Plane {
@@ -118,63 +121,73 @@ impl Solid {
                 // a ball within the other has no side: the normal then points along the axis everywhere
                 let sine = if large - small < length { (large - small) / length } else { 1.0 };
                 let cosine = sqrt(max(1.0 - sine * sine, 0.0));
-                Solid::Capsule { from, axis, length, large, small, sine, cosine }
+                Solid::Capsule { from, axis, length, large, small, sine, cosine, beside: beside(axis) }
             }
             Shape::Plane { normal } => Solid::Plane { normal: direction(Vector3::from(normal)).0 },
             Shape::Box { half_m } => Solid::Box { half: Vector3::from(half_m) },
         }
     }
 
-    /// Distance to the surface in m, negative inside, and the outward normal of the nearest place on it.
-    #[inline]
-    pub fn distance(&self, y: Vector3<f32>) -> (f32, Vector3<f32>) {
+    /// Distance to the surface in m, negative inside, and the outward normal of the nearest place on it, of the places of
+    /// some lanes.
+    #[inline(always)]
+    pub fn distance<V: Vector>(&self, zero: V, y: Three<V>) -> (V, Three<V>) {
         match *self {
             Solid::Sphere { radius } => {
-                let (normal, away) = direction(y);
-                (away - radius, normal)
+                let (normal, away) = directions(zero, y);
+                (away - zero.all(radius), normal)
             }
-            Solid::Capsule { from, axis, length, large, small, sine, cosine } => {
-                let w = y - from;
-                let along = w.dot(&axis);
-                let (across, away) = direction_across(w - axis * along, axis);
+            Solid::Capsule { from, axis, length, large, small, sine, cosine, beside } => {
+                let (axis, sine, cosine) = (Three::all(zero, axis), zero.all(sine), zero.all(cosine));
+                let w = y.minus(Three::all(zero, from));
+                let along = w.dot(axis);
+                let across = w.minus(axis.times(along));
+                let away = across.length();
+                let side = Three::choose(away, zero, across.over(away), Three::all(zero, beside));
+                let away = away.above(zero, away, zero);
                 // the normal of the side through y starts on the axis at (along - away * sine / cosine)
                 let start = along * cosine - away * sine;
-                if start <= 0.0 {
-                    let (normal, away) = direction(w);
-                    (away - large, normal)
-                } else if start >= length * cosine {
-                    let (normal, away) = direction(w - axis * length);
-                    (away - small, normal)
-                } else {
-                    (along * sine + away * cosine - large, axis * sine + across * cosine)
-                }
+                let before = start.one_unless_above(zero);
+                let beyond = before.pick(zero, (zero.all(length) * cosine).one_unless_above(start));
+                let (normal, to_end) = directions(zero, Three::pick(beyond, w.minus(axis.times(zero.all(length))), w));
+                let of_end = to_end - beyond.pick(zero.all(small), zero.all(large));
+                let of_side = along * sine + away * cosine - zero.all(large);
+                let end = before + beyond;
+                (end.pick(of_end, of_side), Three::pick(end, normal, axis.times(sine).plus(side.times(cosine))))
             }
-            Solid::Plane { normal } => (normal.dot(&y), normal),
+            Solid::Plane { normal } => {
+                let normal = Three::all(zero, normal);
+                (normal.dot(y), normal)
+            }
             Solid::Box { half } => {
-                let q = Vector3::new(y.x.abs() - half.x, y.y.abs() - half.y, y.z.abs() - half.z);
-                let outside = Vector3::new(max(q.x, 0.0), max(q.y, 0.0), max(q.z, 0.0));
-                let away = length(outside);
-                let sign = Vector3::new(sign(y.x), sign(y.y), sign(y.z));
-                if away > 0.0 {
-                    let n = outside / away;
-                    return (away, Vector3::new(n.x * sign.x, n.y * sign.y, n.z * sign.z));
-                }
-                if q.x >= q.y && q.x >= q.z {
-                    (q.x, Vector3::new(sign.x, 0.0, 0.0))
-                } else if q.y >= q.z {
-                    (q.y, Vector3::new(0.0, sign.y, 0.0))
-                } else {
-                    (q.z, Vector3::new(0.0, 0.0, sign.z))
-                }
+                let Three([x, y, z]) = y;
+                let (minus, one) = (zero.all(-1.0), zero.all(1.0));
+                let sign = [zero.above(x, minus, one), zero.above(y, minus, one), zero.above(z, minus, one)];
+                let q = Three([x, y, z]).abs().minus(Three::all(zero, half));
+                let outside = q.max(Three([zero; 3]));
+                let away = outside.length();
+                let n = outside.over(away);
+                // inside the nearest face counts, of equal ones the first
+                let [qx, qy, qz] = q.0;
+                let first = qy.one_unless_above(qx) * qz.one_unless_above(qx);
+                let second = first.pick(zero, qz.one_unless_above(qy));
+                let third = one - first - second;
+                let [x, y, z] = sign;
+                let face = Three([first.pick(x, zero), second.pick(y, zero), third.pick(z, zero)]);
+                let depth = first.pick(qx, second.pick(qy, qz));
+                let n = Three([n.0[0] * x, n.0[1] * y, n.0[2] * z]);
+                (away.above(zero, away, depth), Three::choose(away, zero, n, face))
             }
         }
     }
 }
 
-/// 1 or -1.
+/// [`direction`] in each lane.
 #[inline(always)]
-fn sign(x: f32) -> f32 {
-    if x < 0.0 { -1.0 } else { 1.0 }
+fn directions<V: Vector>(zero: V, v: Three<V>) -> (Three<V>, V) {
+    let length = v.length();
+    let up = Three([zero, zero.all(1.0), zero]);
+    (Three::choose(length, zero, v.over(length), up), length.above(zero, length, zero))
 }
 
 /// Length of a vector.
@@ -190,13 +203,8 @@ pub(crate) fn direction(v: Vector3<f32>) -> (Vector3<f32>, f32) {
     if length > 0.0 { (v / length, length) } else { (Vector3::new(0.0, 1.0, 0.0), 0.0) }
 }
 
-/// The same for a vector across `axis`; where there is no direction, any across it.
-#[inline(always)]
-fn direction_across(v: Vector3<f32>, axis: Vector3<f32>) -> (Vector3<f32>, f32) {
-    let length = length(v);
-    if length > 0.0 {
-        return (v / length, length);
-    }
+/// A direction across an axis of length 1.
+fn beside(axis: Vector3<f32>) -> Vector3<f32> {
     let (x, y, z) = (axis.x.abs(), axis.y.abs(), axis.z.abs());
     let least = min(x, min(y, z));
     let other = if x == least {
@@ -206,13 +214,37 @@ fn direction_across(v: Vector3<f32>, axis: Vector3<f32>) -> (Vector3<f32>, f32) 
     } else {
         Vector3::new(axis.y, -axis.x, 0.0)
     };
-    (direction(other).0, 0.0)
+    direction(other).0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise;
+    use crate::simd::{Pass, run};
+    use crate::width::Supported;
+    use crate::{Width, noise};
+
+    /// The distance from a solid.
+    struct At<'a>(&'a Solid, Vector3<f32>);
+
+    impl Pass for At<'_> {
+        type Output = (f32, Vector3<f32>);
+
+        #[inline(always)]
+        fn run<V: Vector>(self, zero: V) -> (f32, Vector3<f32>) {
+            let (distance, Three([x, y, z])) = self.0.distance(zero, Three::all(zero, self.1));
+            let first = |lanes: V| {
+                let mut all = [0.0; 16];
+                lanes.write(&mut all, 0);
+                all[0]
+            };
+            (first(distance), Vector3::new(first(x), first(y), first(z)))
+        }
+    }
+
+    fn distance(solid: &Solid, y: Vector3<f32>) -> (f32, Vector3<f32>) {
+        run(Supported::new(Width::Scalar).unwrap(), At(solid, y))
+    }
 
     fn random(count: &mut u32, size: f32) -> Vector3<f32> {
         *count += 3;
@@ -247,7 +279,7 @@ mod tests {
             let mut outside = 0;
             for _ in 0..60 {
                 let y = random(&mut count, 0.5);
-                let (phi, n) = solid.distance(y);
+                let (phi, n) = distance(&solid, y);
                 let brute = hull_distance(y, ends_m, radii_m);
                 assert!((length(n) - 1.0).abs() < 1e-5);
                 if brute > 0.0 {
@@ -269,7 +301,7 @@ mod tests {
         let mut count = 0;
         for _ in 0..100 {
             let y = random(&mut count, 0.25);
-            let (phi, _) = solid.distance(y);
+            let (phi, _) = distance(&solid, y);
             let inside = (0..3).all(|a| y[a].abs() < half[a]);
             let mut nearest = f32::INFINITY;
             for axis in 0..3 {
@@ -309,8 +341,8 @@ mod tests {
             let solid = Solid::new(&shape);
             for _ in 0..300 {
                 let (y, way) = (random(&mut count, 0.4), random(&mut count, 1e-3));
-                let (phi, n) = solid.distance(y);
-                let (next, m) = solid.distance(y + way);
+                let (phi, n) = distance(&solid, y);
+                let (next, m) = distance(&solid, y + way);
                 assert!((next - phi).abs() <= length(way) * 1.001 + 1e-6);
                 if n.dot(&m) > 0.99 {
                     // second order: way^2 / (2 radius of curvature)

@@ -3,7 +3,7 @@
 //! | bytes | content |
 //! |---|---|
 //! | 0..8 | `TAUTSNAP` |
-//! | 8..12, 12..16 | version 1, number of bytes |
+//! | 8..12, 12..16 | version 2, number of bytes |
 //! | 16..24 | digest of grid, definition, masses and mask |
 //! | 24..32 | step index |
 //! | 32..36, 36..40 | number of pins, bits: 1 if forces are pending, 2 if the surroundings (gravity, damping, air, rest lengths) were changed, 4 if the frame was moved |
@@ -12,7 +12,7 @@
 //! | then | the pending forces, three times f32 `[rows][columns]`, if any |
 //! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2, frames of quiet if the cloth may sleep |
 //! | then | each pin: particle as f32, from x y z, to x y z |
-//! | last 8 | hash of all bytes before |
+//! | last 8 | [`Hash64::bulk`](crate::Hash64::bulk) of all bytes before |
 //!
 //! Left out, since they do not change by stepping: stiffness, inertia (it follows from the pins), masses and mask.
 //!
@@ -26,7 +26,7 @@ use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 40;
 /// Bits of the flags.
 const PULL: u32 = 1;
@@ -138,7 +138,7 @@ impl Cloth<'_> {
         }
         put_floats(&mut rest, self.pins.numbers.get(..PIN_NUMBERS * self.pins.count).unwrap_or(&[]));
         let mut h = Hash64::new();
-        h.bytes(body);
+        h.bulk(body);
         put(&mut tail, &h.finish().to_le_bytes());
         Ok(size)
     }
@@ -177,7 +177,7 @@ impl Cloth<'_> {
         }
         let (body, tail) = bytes.split_at_checked(size - 8).ok_or(Error::Truncated)?;
         let mut h = Hash64::new();
-        h.bytes(body);
+        h.bulk(body);
         if u64_at(tail, 0) != h.finish() {
             return Err(Error::Checksum);
         }

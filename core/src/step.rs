@@ -48,13 +48,23 @@ impl Cloth<'_> {
             return Err(Error::NoStiffness);
         }
         if self.is_asleep() {
-            self.step_index += 1;
-            return Ok(StepFlags::ASLEEP);
+            return Ok(self.sleep_through());
         }
         self.refresh(true);
         self.keep_good();
         let bad = self.broken_inputs();
         let finite = bad.0 == 0 && self.advance();
+        Ok(self.end_frame(bad, finite))
+    }
+
+    /// A frame in which nothing happens.
+    pub(crate) fn sleep_through(&mut self) -> StepFlags {
+        self.step_index += 1;
+        StepFlags::ASLEEP
+    }
+
+    /// What comes after the substeps of a frame; `bad` is what was found wrong before them.
+    pub(crate) fn end_frame(&mut self, bad: StepFlags, finite: bool) -> StepFlags {
         let flags = if finite {
             self.finish_pins();
             self.step_index += 1;
@@ -74,7 +84,7 @@ impl Cloth<'_> {
         }
         self.drop_forces();
         self.settle(finite);
-        Ok(flags)
+        flags
     }
 
     /// The substeps of a frame. Whether everything stayed finite.
@@ -140,7 +150,7 @@ impl Cloth<'_> {
         simd::run(self.width, sweep);
     }
 
-    fn keep_good(&mut self) {
+    pub(crate) fn keep_good(&mut self) {
         let planes = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact_mut(size).zip(planes) {

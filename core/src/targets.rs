@@ -6,10 +6,11 @@
 
 use crate::force::Substep;
 use crate::frame::Motion;
-use crate::layout::{Layout, copy, read, span, take, write};
-use crate::math::{lerp, max, min, sqrt};
+use crate::layout::{Layout, copy, read, take, write};
+use crate::math::{max, min, sqrt};
 use crate::shapes::{direction, length};
-use crate::{Cloth, Error, Vector3};
+use crate::simd::{Pass, Three, Vector};
+use crate::{Cloth, Error, Vector3, simd};
 
 type V3 = Vector3<f32>;
 
@@ -23,9 +24,6 @@ const DISTANCE: usize = 14;
 
 /// What is stored for a particle without a largest distance: a state holds finite numbers only.
 const FREE: f32 = f32::MAX;
-
-/// Particles that are looked at together.
-const BLOCK: usize = 16;
 
 /// How far a particle may be from its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -295,73 +293,117 @@ impl Cloth<'_> {
 
     /// Keeps the particles within their distance of the targets as they are at `share` (0 to 1) of the frame.
     pub(crate) fn apply_targets(&mut self, _c: &Substep, share: f32) {
-        let l = self.layout;
-        for row in 0..l.rows {
-            for start in (0..l.width).step_by(BLOCK) {
-                let first = l.at(row, start);
-                let held = self.block_held(first, share);
-                for (i, held) in held.into_iter().enumerate() {
-                    let at = first + i;
-                    if held == 0 || read(self.inverse, at) == 0.0 {
-                        continue;
+        let hold = Hold {
+            layout: &self.layout,
+            targets: &self.targets,
+            rate_hz: self.def.rate_hz,
+            share,
+            x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
+            v: [&mut *self.v.x, &mut *self.v.y, &mut *self.v.z],
+            inverse: self.inverse,
+        };
+        simd::run(self.width, hold);
+    }
+
+    /// The next frame starts where this one ended; after a frame that was taken back (`finite` false), where it began.
+    pub(crate) fn finish_targets(&mut self, finite: bool) {
+        let (from, rest) = self.targets.planes.split_at_mut((TO * self.layout.plane).min(self.targets.planes.len()));
+        let to = rest.get_mut(..from.len()).unwrap_or(&mut []);
+        if finite {
+            copy(from, to);
+        } else {
+            copy(to, from);
+        }
+    }
+}
+
+/// Holds the particles within their limits.
+struct Hold<'p, 'a> {
+    layout: &'p Layout,
+    targets: &'p Targets<'a>,
+    rate_hz: f32,
+    share: f32,
+    x: [&'p mut [f32]; 3],
+    v: [&'p mut [f32]; 3],
+    inverse: &'p [f32],
+}
+
+impl Pass for Hold<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self, zero: V) {
+        for row in 0..self.layout.rows {
+            for column in (0..self.layout.width).step_by(V::LANES) {
+                let at = self.layout.at(row, column);
+                let held = self.may_hold(zero, at);
+                if held.any() {
+                    let mut each = [0.0; 16];
+                    held.write(&mut each, 0);
+                    for (held, at) in each.iter().zip(at..) {
+                        if *held > 0.0 {
+                            self.hold(at);
+                        }
                     }
-                    let mut x = V3::from(self.local(at));
-                    let mut v = V3::new(read(self.v.x, at), read(self.v.y, at), read(self.v.z, at));
-                    self.aim(at, share).hold(&mut x, &mut v);
-                    self.set_position_at(at, x.into());
-                    self.set_velocity_at(at, v.into());
                 }
             }
         }
     }
+}
 
-    /// Which particles of a block a limit holds: 1 where one may. A quick look; [`Aim::hold`] looks exactly.
+impl Hold<'_, '_> {
+    /// Which particles from a place on a limit holds: 1 where one may. A quick look; [`Aim::hold`] looks exactly.
     #[inline(always)]
-    fn block_held(&self, first: usize, share: f32) -> [u32; BLOCK] {
-        let size = self.layout.plane;
-        let block =
-            |plane: &[f32], at: usize| span(plane, at, BLOCK).first_chunk::<BLOCK>().copied().unwrap_or([0.0; BLOCK]);
-        let number = |plane: usize| block(self.targets.planes, plane * size + first);
-        let (most, radius) = (number(MAX_DISTANCE), number(RADIUS));
-        let mut held = [0; BLOCK];
-        let free = most.iter().zip(&radius).all(|(most, radius)| *most == FREE && *radius == 0.0);
-        if free {
-            return held;
+    fn may_hold<V: Vector>(&self, zero: V, at: usize) -> V {
+        let (size, share) = (self.layout.plane, zero.all(self.share));
+        let planes = &*self.targets.planes;
+        let place = |plane: usize| plane.wrapping_mul(size).wrapping_add(at);
+        let (most, radius) = (zero.read(planes, place(MAX_DISTANCE)), zero.read(planes, place(RADIUS)));
+        let backstops = radius.any_above(zero);
+        if !backstops && !zero.all(FREE).any_above(most) {
+            return zero;
         }
         // from the target, along the three axes
-        let mut away = [[0.0; BLOCK]; 3];
-        for (a, x) in [&*self.x.x, &*self.x.y, &*self.x.z].into_iter().enumerate() {
-            let (x, from, to) = (block(x, first), number(a), number(TO + a));
-            if let Some(away) = away.get_mut(a) {
-                for i in 0..BLOCK {
-                    away[i] = x[i] - (from[i] + (to[i] - from[i]) * share);
-                }
-            }
+        let from = [zero.read(planes, place(0)), zero.read(planes, place(1)), zero.read(planes, place(2))];
+        let to = [zero.read(planes, place(TO)), zero.read(planes, place(TO + 1)), zero.read(planes, place(TO + 2))];
+        let [x, y, z] = &self.x;
+        let away = Three::read(zero, [x, y, z], at).minus(between(Three(from), Three(to), share));
+        // a little less than the limit, since it is a squared and rounded one
+        let held = (most * most * zero.all(0.9999)).one_unless_above(away.squared());
+        if !backstops {
+            return held;
         }
-        let [x, y, z] = &away;
-        let mut backstops = 0.0f32;
-        for i in 0..BLOCK {
-            // a little less than the limit, since it is a squared and rounded one
-            let d = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-            held[i] = u32::from(d >= most[i] * most[i] * 0.9999);
-            backstops = max(radius[i], backstops);
-        }
-        if backstops > 0.0 {
-            let distance = number(DISTANCE);
-            let (ax, ay, az) = (number(NORMAL), number(NORMAL + 1), number(NORMAL + 2));
-            let (bx, by, bz) = (number(TO + NORMAL), number(TO + NORMAL + 1), number(TO + NORMAL + 2));
-            for i in 0..BLOCK {
-                let n = V3::new(lerp(ax[i], bx[i], share), lerp(ay[i], by[i], share), lerp(az[i], bz[i], share));
-                let behind = (radius[i] + distance[i]) / sqrt(max(n.dot(&n), 1e-12));
-                let from = V3::new(x[i], y[i], z[i]) + n * behind;
-                held[i] |= u32::from(from.dot(&from) <= radius[i] * radius[i] * 1.0001);
-            }
-        }
-        held
+        const END: usize = TO + NORMAL;
+        let from = [
+            zero.read(planes, place(NORMAL)),
+            zero.read(planes, place(NORMAL + 1)),
+            zero.read(planes, place(NORMAL + 2)),
+        ];
+        let to = [zero.read(planes, place(END)), zero.read(planes, place(END + 1)), zero.read(planes, place(END + 2))];
+        let normal = between(Three(from), Three(to), share);
+        let behind = (radius + zero.read(planes, place(DISTANCE))) / normal.squared().max(zero.all(1e-12)).sqrt();
+        let from = away.plus(normal.times(behind));
+        from.squared().one_unless_above(radius * radius * zero.all(1.0001)).max(held)
     }
 
-    fn aim(&self, at: usize, share: f32) -> Aim {
-        let (size, rate, t) = (self.layout.plane, self.def.rate_hz, &self.targets);
+    /// Holds one particle. Pinned and absent ones and spare places go their own way.
+    #[inline(never)]
+    fn hold(&mut self, at: usize) {
+        if read(self.inverse, at) == 0.0 {
+            return;
+        }
+        let get = |[x, y, z]: &[&mut [f32]; 3]| V3::new(read(x, at), read(y, at), read(z, at));
+        let (mut x, mut v) = (get(&self.x), get(&self.v));
+        self.aim(at).hold(&mut x, &mut v);
+        for (planes, value) in [(&mut self.x, x), (&mut self.v, v)] {
+            for (plane, value) in planes.iter_mut().zip(value.iter()) {
+                write(plane, at, *value);
+            }
+        }
+    }
+
+    fn aim(&self, at: usize) -> Aim {
+        let (size, rate, share, t) = (self.layout.plane, self.rate_hz, self.share, self.targets);
         let mix = |from: V3, to: V3| if share < 1.0 { from + (to - from) * share } else { to };
         let (p, q) = (t.vector(0, size, at), t.vector(TO, size, at));
         let (m, n) = (t.vector(NORMAL, size, at), t.vector(TO + NORMAL, size, at));
@@ -376,15 +418,10 @@ impl Cloth<'_> {
             distance: read(t.planes, DISTANCE * size + at),
         }
     }
+}
 
-    /// The next frame starts where this one ended; after a frame that was taken back (`finite` false), where it began.
-    pub(crate) fn finish_targets(&mut self, finite: bool) {
-        let (from, rest) = self.targets.planes.split_at_mut((TO * self.layout.plane).min(self.targets.planes.len()));
-        let to = rest.get_mut(..from.len()).unwrap_or(&mut []);
-        if finite {
-            copy(from, to);
-        } else {
-            copy(to, from);
-        }
-    }
+/// From some points to others by a share.
+#[inline(always)]
+fn between<V: Vector>(from: Three<V>, to: Three<V>, share: V) -> Three<V> {
+    from.plus(to.minus(from).times(share))
 }

@@ -14,16 +14,20 @@ use crate::{Cloth, Error, simd};
 pub(crate) const TETHERS: usize = 2;
 
 /// Particles that are looked at together: one vector of the widest kind.
-const BLOCK: usize = 16;
+pub(crate) const BLOCK: usize = 16;
 /// Where the particles of a block have different pins. No particle is at this place of a plane.
 const MIXED: u32 = 0;
+/// Set where the pins of a block follow one another as its particles do, as below a pinned row: the place is the first
+/// one's. No plane is so long that a place would have this bit.
+const RUN: u32 = 1 << 31;
 
 /// The tethers of particles in rows: of each the places of its two nearest pins, the nearest last, as the bits of a u32, and
 /// the largest lengths in m; infinite where there is no such pin or the particle does not move.
 pub(crate) struct Tethers<'a> {
     pub pin: [&'a mut [f32]; TETHERS],
     pub length: [&'a mut [f32]; TETHERS],
-    /// For each [`BLOCK`] of a plane the place of the pin that all have, as `pin`, or [`MIXED`].
+    /// For each [`BLOCK`] of a plane the place of the pin that all have, as `pin`, or that of the first with [`RUN`], or
+    /// [`MIXED`].
     pub common: [&'a mut [f32]; TETHERS],
 }
 
@@ -42,14 +46,24 @@ impl<'a> Tethers<'a> {
         })
     }
 
-    /// Finds the blocks with one pin, after pins and lengths have been written.
+    /// Finds the blocks with one pin or with a run of them, after pins and lengths have been written.
     pub fn find_common(&mut self) {
         for ((pins, lengths), common) in self.pin.iter().zip(&self.length).zip(&mut self.common) {
             for ((pins, lengths), common) in pins.chunks(BLOCK).zip(lengths.chunks(BLOCK)).zip(common.iter_mut()) {
-                let mut held = pins.iter().zip(lengths).filter(|(_, l)| **l < f32::INFINITY).map(|(p, _)| p.to_bits());
+                let held = || {
+                    let all = pins.iter().zip(lengths).zip(0u32..);
+                    all.filter(|((_, l), _)| **l < f32::INFINITY).map(|((p, _), lane)| (p.to_bits(), lane))
+                };
                 // where nothing is held any place will do
-                let first = held.next().unwrap_or(1);
-                *common = f32::from_bits(if held.all(|p| p == first) { first } else { MIXED });
+                let (first, lane) = held().next().unwrap_or((1, 0));
+                let start = first.wrapping_sub(lane);
+                *common = f32::from_bits(if held().all(|(p, _)| p == first) {
+                    first
+                } else if first > lane && held().all(|(p, lane)| p == start.wrapping_add(lane)) {
+                    start | RUN
+                } else {
+                    MIXED
+                });
             }
         }
     }
@@ -110,6 +124,17 @@ impl Pull<'_> {
         [read(x, place), read(y, place), read(z, place)]
     }
 
+    /// The anchors of lanes that follow one another, from a place on.
+    #[inline(always)]
+    fn run_of<V: Vector>(&self, zero: V, place: usize) -> Three<V> {
+        let [x, y, z] = &self.x;
+        let [x, y, z] = match self.anchors {
+            Some(anchors) => anchors,
+            None => [&**x, &**y, &**z],
+        };
+        Three([zero.read(x, place), zero.read(y, place), zero.read(z, place)])
+    }
+
     /// The anchors of the lanes from a place on, one by one.
     #[inline(always)]
     fn anchors_of<V: Vector>(&self, zero: V, tether: usize, at: usize) -> Three<V> {
@@ -142,6 +167,8 @@ impl Pull<'_> {
                 let length = zero.read(self.tethers.length[tether], at);
                 let anchor = if pins[tether] == MIXED {
                     self.anchors_of(zero, tether, at)
+                } else if pins[tether] & RUN != 0 {
+                    self.run_of(zero, (pins[tether] & !RUN) as usize + lane)
                 } else {
                     let [x, y, z] = anchors[tether];
                     Three([zero.all(x), zero.all(y), zero.all(z)])

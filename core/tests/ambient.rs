@@ -130,7 +130,7 @@ fn a_forged_snapshot_cannot_bring_surroundings_that_the_calls_refuse() {
         forged[first + 4 * place..][..4].copy_from_slice(&value.to_le_bytes());
         let end = forged.len() - 8;
         let mut h = Hash64::new();
-        h.bytes(&forged[..end]);
+        h.bulk(&forged[..end]);
         forged[end..].copy_from_slice(&h.finish().to_le_bytes());
         assert_eq!(c.restore(&forged), Err(error), "{place} {value}");
         assert_eq!(c.state_hash(), hash);

@@ -109,7 +109,7 @@ fn forged_colliders_are_refused() {
         s[at..at + 4].copy_from_slice(&value.to_le_bytes());
         let body = s.len() - 8;
         let mut h = Hash64::new();
-        h.bytes(&s[..body]);
+        h.bulk(&s[..body]);
         s[body..].copy_from_slice(&h.finish().to_le_bytes());
         s
     };
@@ -151,7 +151,7 @@ fn a_frame_that_is_taken_back_takes_back_the_colliders() {
     }
     let body = s.len() - 8;
     let mut h = Hash64::new();
-    h.bytes(&s[..body]);
+    h.bulk(&s[..body]);
     s[body..].copy_from_slice(&h.finish().to_le_bytes());
     c.restore(&s).unwrap();
     let hash = c.state_hash();

@@ -130,7 +130,7 @@ fn near_infinity(c: &mut Cloth<'_>) {
     }
     let body = s.len() - 8;
     let mut h = Hash64::new();
-    h.bytes(&s[..body]);
+    h.bulk(&s[..body]);
     s[body..].copy_from_slice(&h.finish().to_le_bytes());
     c.restore(&s).expect("finite, so accepted");
 }

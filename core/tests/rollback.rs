@@ -175,7 +175,7 @@ fn the_bytes_are_those_that_are_documented() {
     let u64_at = |at: usize| u64::from_le_bytes(s[at..at + 8].try_into().unwrap());
     let number = |i: usize| f32::from_bits(u32_at(40 + 4 * i));
     assert_eq!(&s[..8], b"TAUTSNAP");
-    assert_eq!((u32_at(8), u32_at(12)), (1, s.len() as u32));
+    assert_eq!((u32_at(8), u32_at(12)), (2, s.len() as u32));
     assert_eq!(u64_at(24), 5);
     assert_eq!((u32_at(32), u32_at(36)), (2, 1));
     let n = 9 * 11;
@@ -194,7 +194,7 @@ fn the_bytes_are_those_that_are_documented() {
     let (a, b) = (at(3), at(20));
     assert_eq!(pins, [3.0, a.x, a.y, a.z, 1.5, -2.0, 0.25, 20.0, b.x, b.y, b.z, b.x, b.y, b.z]);
     let mut h = taut::Hash64::new();
-    h.bytes(&s[..s.len() - 8]);
+    h.bulk(&s[..s.len() - 8]);
     assert_eq!(u64_at(s.len() - 8), h.finish());
     // what follows the snapshot is not looked at
     let mut longer = s.clone();
@@ -208,7 +208,7 @@ fn forged(saved: &[u8], change: impl Fn(&mut [u8])) -> Vec<u8> {
     let body = s.len() - 8;
     change(&mut s[..body]);
     let mut h = taut::Hash64::new();
-    h.bytes(&s[..body]);
+    h.bulk(&s[..body]);
     s[body..].copy_from_slice(&h.finish().to_le_bytes());
     s
 }
@@ -241,7 +241,8 @@ fn damaged_snapshots_are_refused_and_change_nothing() {
 
     let put = |at: usize, number: u32| forged(&saved, |s| s[at..at + 4].copy_from_slice(&number.to_le_bytes()));
     refuse(&put(0, 7), Error::WrongKind, "magic");
-    refuse(&put(8, 2), Error::UnsupportedVersion, "version");
+    refuse(&put(8, 1), Error::UnsupportedVersion, "an older version");
+    refuse(&put(8, 3), Error::UnsupportedVersion, "a newer version");
     refuse(&put(12, 47), Error::Shape, "size too small");
     refuse(&put(12, u32::MAX), Error::Truncated, "size too large");
     refuse(&put(16, 0), Error::Foreign, "digest");

@@ -334,7 +334,7 @@ fn forged_targets_are_refused() {
         s[byte..byte + 4].copy_from_slice(&f32::to_le_bytes(value));
         let body = s.len() - 8;
         let mut h = Hash64::new();
-        h.bytes(&s[..body]);
+        h.bulk(&s[..body]);
         s[body..].copy_from_slice(&h.finish().to_le_bytes());
         assert_eq!(c.restore(&s), Err(error), "plane {number} as {value}");
         assert_eq!(c.state_hash(), hash);

@@ -59,6 +59,8 @@ mod step;
 
 mod step_all;
 
+mod bands;
+
 mod width;
 
 mod read;

@@ -71,8 +71,6 @@ pub enum Setting {
     Generated(Vec<f32>),
     /// Four numbers in N/m (warp, weft, shear, bend) that were fitted to strains ([`crate::front::fit`]).
     DataDriven([f32; 4]),
-    /// A setting with limits on levels: the largest strain along warp, weft and diagonal.
-    Limited(Box<Setting>, [f32; 3]),
 }
 
 impl Setting {
@@ -88,19 +86,11 @@ impl Setting {
             Setting::RatiosInertia => "ratios_inertia",
             Setting::Generated(_) => "generated",
             Setting::DataDriven(_) => "data_driven",
-            Setting::Limited(of, _) => match **of {
-                Setting::UniformInertia => "uniform_limits",
-                Setting::AnalyticInertia(_) => "analytic_limits",
-                Setting::RatiosInertia => "ratios_limits",
-                Setting::Generated(_) => "generated_limits",
-                _ => "limits",
-            },
         }
     }
 
     fn has_inertia(&self) -> bool {
         match self {
-            Setting::Limited(of, _) => of.has_inertia(),
             Setting::UniformInertia | Setting::AnalyticInertia(_) | Setting::RatiosInertia | Setting::Generated(_) => {
                 true
             }
@@ -126,7 +116,6 @@ impl Setting {
             }
             Setting::RatiosInertia => constant(RATIOS.map(|r| r * BEYOND)),
             Setting::Generated(field) => field.clone(),
-            Setting::Limited(of, _) => of.field(case),
         }
     }
 }
@@ -141,8 +130,8 @@ pub enum Limits {
     Tethers(f32),
     /// Two passes of the strain limit at this strain.
     StrainLimit(f32),
-    /// Levels at this strain, with tethers of the same slack.
-    Levels(f32),
+    /// Levels at these strains along warp, weft and diagonal, with tethers of the same slacks.
+    Levels([f32; 3]),
 }
 
 impl Limits {
@@ -156,12 +145,23 @@ impl Limits {
         }
     }
 
-    /// The slack or the strain.
-    pub fn strain(self) -> Option<f32> {
+    /// Levels at one strain in every direction.
+    pub fn levels(strain: f32) -> Limits {
+        Limits::Levels([strain; 3])
+    }
+
+    /// The slack or the strain along warp, weft and diagonal.
+    pub fn strains(self) -> Option<[f32; 3]> {
         match self {
             Limits::None => None,
-            Limits::Tethers(strain) | Limits::StrainLimit(strain) | Limits::Levels(strain) => Some(strain),
+            Limits::Tethers(strain) | Limits::StrainLimit(strain) => Some([strain; 3]),
+            Limits::Levels(strains) => Some(strains),
         }
+    }
+
+    /// The largest of [`Limits::strains`].
+    pub fn strain(self) -> Option<f32> {
+        self.strains().map(|s| s.into_iter().fold(0.0, f32::max))
     }
 
     /// A definition with these limits.
@@ -172,8 +172,8 @@ impl Limits {
             Limits::StrainLimit(_) => Features::STRAIN_LIMIT,
             Limits::Levels(_) => Features::LEVELS,
         };
-        let strain = self.strain().map_or(def.strain_limit, |s| [s; 3]);
-        let slack = self.strain().map_or(def.tether_slack, |s| [s; 3]);
+        let strain = self.strains().unwrap_or(def.strain_limit);
+        let slack = self.strains().unwrap_or(def.tether_slack);
         ClothDef { features: Features(def.features.0 | features.0), strain_limit: strain, tether_slack: slack, ..*def }
     }
 }
@@ -191,6 +191,26 @@ pub struct Model {
     pub cg_iterations: u32,
     /// What keeps lengths beside the springs.
     pub limits: Limits,
+}
+
+impl Model {
+    /// A setting with limits on levels, else as [`Model::from`] has it.
+    pub fn limited(setting: Setting, strains: [f32; 3]) -> Model {
+        Model { limits: Limits::Levels(strains), ..setting.into() }
+    }
+
+    /// The name in reports: that of the setting, or with limits on levels that with "limits" for the inertia.
+    pub fn name(&self) -> &'static str {
+        let name = self.setting.name();
+        match (self.limits, name) {
+            (Limits::Levels(_), "uniform_inertia") => "uniform_limits",
+            (Limits::Levels(_), "analytic_inertia") => "analytic_limits",
+            (Limits::Levels(_), "ratios_inertia") => "ratios_limits",
+            (Limits::Levels(_), "generated") => "generated_limits",
+            (Limits::Levels(_), _) => "limits",
+            _ => name,
+        }
+    }
 }
 
 impl From<Setting> for Model {
@@ -248,9 +268,16 @@ pub struct Frame {
     pub cpu: std::time::Duration,
 }
 
+impl Frame {
+    /// The share of the frames that is done.
+    pub fn done(self) -> f32 {
+        (self.index + 1) as f32 / self.of as f32
+    }
+}
+
 /// Runs a case with a setting. `progress` is called after every frame with the share that is done.
 pub fn run(case: &Case, setting: &Setting, mut progress: impl FnMut(f32)) -> Result<Outcome, Error> {
-    run_model(case, &setting.clone().into(), |_, frame| progress((frame.index + 1) as f32 / frame.of as f32))
+    run_model(case, &setting.clone().into(), |_, frame| progress(frame.done()))
 }
 
 /// Runs a case with a model and shows every frame to `look`.
@@ -279,10 +306,6 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
         ..ClothDef::default()
     });
     let mut def = case.scene.fit(&def, shape.0, shape.1);
-    if let Setting::Limited(_, limits) = setting {
-        def.features = Features(def.features.0 | Features::LEVELS.0);
-        (def.strain_limit, def.tether_slack) = (*limits, *limits);
-    }
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let field = setting.field(case);
     if let Setting::Reference(_) = setting {
@@ -326,7 +349,7 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
     let mass = f64::from(cloth.particle_mass_kg());
     let steps = f64::from(frames) * f64::from(def.substeps) * particles as f64;
     Ok(Outcome {
-        name: setting.name(),
+        name: model.name(),
         substeps: def.substeps,
         stretch_pct: metrics::stretch(&cloth),
         peak_stretch_pct: 100.0 * f64::from(peak),

@@ -5,22 +5,28 @@
 
 use std::fmt::Write;
 
-use taut::Solver;
-use taut::plan::Hold;
+use taut::plan::{Hold, Method, PlanDef, plan_of};
+use taut::{Grid, GridDef, Solver};
 
 use crate::compare::Limits;
 use crate::fabric::Fabric;
 use crate::front::{Correction, NO_BEND, Row, Spec};
 use crate::scene::Scene;
 
-/// The fabrics that the laws of K as it is are fitted to.
+/// The fabrics that the laws of K as it is are fitted to; the strains of a stiffest cloth are those of the first.
 pub const FABRICS: [&str; 7] = ["denim", "polyester tablecloth", "cotton jersey", "rib knit", "silk", "canvas", "felt"];
 
 /// Sides that the table is made from.
 pub const SIDES: [u32; 3] = [16, 32, 64];
 
-/// Strains that the laws are fitted to: below it is noise, above it nobody wants it.
+/// Strains whose neighbours decide about margins: below it is noise, above it nobody wants it.
 const RANGE: std::ops::RangeInclusive<f64> = 0.001..=0.4;
+
+/// The strain that stands where a row blew up.
+const BLOWN: f64 = 2.0;
+
+/// The least margin.
+const LEAST_MARGIN: f64 = 0.03;
 
 /// Gravity of the rows in m/s^2, and the side of their sheets in m.
 const GRAVITY: f64 = 9.81;
@@ -78,6 +84,7 @@ pub fn list() -> Vec<(Hold, &'static str, Spec)> {
             let fabrics = if side == 64 { &FABRICS[..3] } else { &FABRICS[..] };
             for fabric in fabrics {
                 rows.push((hold, "implicit", implicit(hold, scene, side, fabric)));
+                rows.extend(whole(hold, scene, side, fabric).map(|spec| (hold, "whole", spec)));
             }
         }
     }
@@ -92,6 +99,22 @@ fn families(hold: Hold, spec: Spec) -> Spec {
 pub fn implicit(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Spec {
     let base = Spec::new(scene, fabric, side, Correction::Analytic);
     families(hold, Spec { solver: Solver::ImplicitEuler, substeps: 1, ..base })
+}
+
+/// The row of the fabric's own stiffness with the substeps that it needs; None where those are too many.
+pub fn whole(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Option<Spec> {
+    let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).ok()?;
+    let known = Fabric::named(fabric)?;
+    let def = PlanDef {
+        hold,
+        stiffness_n_per_m: known.stiffness,
+        density_kg_m2: known.density_kg_m2,
+        tolerance: 1.0,
+        ..PlanDef::default()
+    };
+    let plan = plan_of(&grid, &def, Method::Whole).ok()??;
+    let base = Spec::new(scene, fabric, side, Correction::Analytic);
+    Some(families(hold, Spec { substeps: plan.substeps, ..base }))
 }
 
 /// The rows of the explicit methods of a scene: substeps upwards.
@@ -113,7 +136,7 @@ pub fn methods(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Vec
     if side < 64 {
         for substeps in [2, 4] {
             let base = new(Correction::Uniform);
-            rows.push((hold, "levels", Spec { substeps, limits: Limits::Levels(0.05), ..base }));
+            rows.push((hold, "levels", Spec { substeps, limits: Limits::levels(0.05), ..base }));
         }
     }
     rows
@@ -215,54 +238,88 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     if all.is_empty() { 0.0 } else { crate::metrics::percentile(&all, 0.5) }
 }
 
+/// The strains of a method, and what is added to them for what lies between.
+fn strains(points: &[Point], hold: Hold, method: &str) -> String {
+    let of = || points.iter().filter(|p| p.hold == hold && p.method == method);
+    let mut substeps: Vec<u32> = of().map(|p| p.substeps).collect();
+    substeps.sort_unstable();
+    substeps.dedup();
+    let strain = |side: u32, s: u32| of().find(|p| p.side == side && p.substeps == s).map_or(BLOWN, |p| p.strain);
+    let mut ln: Vec<Vec<f64>> =
+        SIDES.iter().map(|side| substeps.iter().map(|s| strain(*side, *s).max(1e-5).ln()).collect()).collect();
+    let margin = margin(&ln, &substeps);
+    for i in 0..ln.len() {
+        for j in (0..substeps.len()).rev() {
+            let finer = if j + 1 < substeps.len() { ln[i][j + 1] } else { f64::MIN };
+            let coarser = if i > 0 { ln[i - 1][j] } else { f64::MIN };
+            ln[i][j] = ln[i][j].max(finer).max(coarser);
+        }
+    }
+    let list = |values: Vec<String>| format!("&[{}]", values.join(", "));
+    let rows: Vec<String> = ln.iter().map(|row| list(row.iter().map(|x| format!("{x:.3}")).collect())).collect();
+    format!(
+        "Strains {{ substeps: {}, ln_strain: [{}], margin: {margin:.3} }}",
+        list(substeps.iter().map(|s| format!("{s}.0")).collect()),
+        rows.join(", ")
+    )
+}
+
+/// Half of what a row lies above the line through its neighbours at most: they are twice as far from each other as those that
+/// a strain is looked up between.
+fn margin(ln: &[Vec<f64>], substeps: &[u32]) -> f64 {
+    let counts = |x: f64| RANGE.contains(&x.exp());
+    let above = |x: [f64; 3], y: [f64; 3]| y[1] - (y[0] + (y[2] - y[0]) * (x[1] - x[0]) / (x[2] - x[0]));
+    let mut most = 2.0 * LEAST_MARGIN;
+    let s: Vec<f64> = substeps.iter().map(|s| f64::from(*s).ln()).collect();
+    for row in ln {
+        for (x, y) in s.windows(3).zip(row.windows(3)).filter(|(_, y)| counts(y[1])) {
+            most = most.max(above([x[0], x[1], x[2]], [y[0], y[1], y[2]]));
+        }
+    }
+    let n = SIDES.map(|side| f64::from(side - 1).ln());
+    if let [a, b, c] = ln {
+        for ((a, b), c) in a.iter().zip(b).zip(c).filter(|((_, b), _)| counts(**b)) {
+            most = most.max(above(n, [*a, *b, *c]));
+        }
+    }
+    0.5 * most
+}
+
+/// The law of K as it is, from the rows of a method.
+fn fabric_law<'a>(rows: impl Iterator<Item = &'a Point>) -> String {
+    let rows: Vec<(Vec<f64>, f64)> = rows
+        .filter(|p| RANGE.contains(&p.strain))
+        .map(|p| {
+            let [warp, weft, shear, density] = p.fabric;
+            let weight = density * GRAVITY * SIDE_M;
+            // shares that add up to 1: strain is proportional to weight over stiffness
+            let ratio = [warp, weft, shear].map(|k| (weight / k).ln());
+            let x = vec![1.0, f64::from(p.side - 1).ln(), ratio[0] - ratio[2], ratio[1] - ratio[2]];
+            (x, p.strain.ln() - ratio[2])
+        })
+        .collect();
+    let f = fit(&rows);
+    let c = &f.coefficients;
+    format!(
+        "FabricLaw {{ constant: {:.3}, grid: {:.3}, warp: {:.3}, weft: {:.3}, shear: {:.3}, margin: {:.3} }}",
+        c[0],
+        c[1],
+        c[2],
+        c[3],
+        1.0 - c[2] - c[3],
+        f.margin
+    )
+}
+
 /// The source of the planner's table.
 pub fn table(points: &[Point]) -> String {
     let mut text = String::from(
         "//! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.\n\n\
-         use super::{FabricLaw, Price, Row, StepLaw};\n\n\
+         use super::strains::Strains;\nuse super::{FabricLaw, Price, Row};\n\n\
          /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; 5] = [\n",
     );
     for hold in Hold::ALL {
         let of = |method: &'static str| points.iter().filter(move |p| p.hold == hold && p.method == method);
-        let useful = |p: &&Point| RANGE.contains(&p.strain);
-        let step_law = |method| {
-            let rows: Vec<(Vec<f64>, f64)> = of(method)
-                .filter(useful)
-                .map(|p| {
-                    let dt = 1.0 / (60.0 * f64::from(p.substeps));
-                    let group = GRAVITY * dt * dt / SIDE_M;
-                    (vec![1.0, f64::from(p.side - 1).ln(), group.ln()], p.strain.ln())
-                })
-                .collect();
-            // without pins there is neither inertia nor a tether
-            let f = if rows.is_empty() { Fit { coefficients: vec![0.0; 3], margin: 0.0 } } else { fit(&rows) };
-            let c = &f.coefficients;
-            format!(
-                "StepLaw {{ constant: {:.3}, grid: {:.3}, step: {:.3}, margin: {:.3} }}",
-                c[0], c[1], c[2], f.margin
-            )
-        };
-        let rows: Vec<(Vec<f64>, f64)> = of("implicit")
-            .map(|p| {
-                let [warp, weft, shear, density] = p.fabric;
-                let weight = density * GRAVITY * SIDE_M;
-                // shares that add up to 1: strain is proportional to weight over stiffness
-                let ratio = [warp, weft, shear].map(|k| (weight / k).ln());
-                let x = vec![1.0, f64::from(p.side - 1).ln(), ratio[0] - ratio[2], ratio[1] - ratio[2]];
-                (x, p.strain.max(1e-5).ln() - ratio[2])
-            })
-            .collect();
-        let f = fit(&rows);
-        let c = &f.coefficients;
-        let fabric = format!(
-            "FabricLaw {{ constant: {:.3}, grid: {:.3}, warp: {:.3}, weft: {:.3}, shear: {:.3}, margin: {:.3} }}",
-            c[0],
-            c[1],
-            c[2],
-            c[3],
-            1.0 - c[2] - c[3],
-            f.margin
-        );
         // what the scene needs beside the plain step is no price of a method
         let scene = if hold == Hold::Loose { median(of("plain").map(|p| p.cost)) - 1.0 } else { 0.0 };
         let price = |c: [f64; 3]| format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2]);
@@ -282,11 +339,13 @@ pub fn table(points: &[Point]) -> String {
         let levels = of("levels").filter(|p| p.substeps == 2).map(|p| p.cost - scene);
         let _ = writeln!(
             text,
-            "    // {hold:?}\n    Row {{\n        plain: {},\n        inertia: {},\n        tethers: {},\n        fabric: {fabric},\n        \
+            "    // {hold:?}\n    Row {{\n        plain: {},\n        inertia: {},\n        tethers: {},\n        whole: {},\n        implicit: {},\n        \
              plain_price: {},\n        tethers_price: {},\n        levels_price: {},\n        implicit_price: {},\n    }},",
-            step_law("plain"),
-            step_law("inertia"),
-            step_law("tethers"),
+            strains(points, hold, "plain"),
+            strains(points, hold, "inertia"),
+            strains(points, hold, "tethers"),
+            fabric_law(of("whole")),
+            fabric_law(of("implicit")),
             price(plain),
             price([median(of("tethers").map(|p| p.cost)), 0.0, 0.0]),
             price([median(levels), 0.0, 0.0]),

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use taut_lab::cusick::{self, DISC_M, Disc, Draped, Photos, Silhouette, Statistics};
+use taut_lab::fabric::rigidity_at;
 use taut_lab::scene::Scene;
 use taut_onnx::Request;
 
@@ -32,7 +33,7 @@ pub struct Args {
     /// A folder of pictures: sample-SS-capture-C.png, 256 x 256, white where the cloth is.
     #[arg(long, value_name = "DIR")]
     silhouettes: PathBuf,
-    /// Bending rigidity D [default: what the generator tells].
+    /// Bending rigidity D [default: what the generator tells, at this mass per area].
     #[arg(long, value_name = "N_M", value_parser = rigidity, allow_hyphen_values = true, conflicts_with = "fit")]
     rigidity: Option<f32>,
     /// Fits D to the first sample and compares with the others.
@@ -114,10 +115,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         height_m: 2.0 * DISC_M,
         pins: &pins,
     })?;
+    let told = rigidity_at(correction.hinge_rigidity_n_m, correction.density_kg_m2, args.density);
     let mut disc = Disc {
         side: args.side,
         density_kg_m2: args.density,
-        rigidity_n_m: args.rigidity.unwrap_or(correction.hinge_rigidity_n_m),
+        rigidity_n_m: args.rigidity.unwrap_or(told),
         field: correction.field.iter().copied().collect(),
     };
     let drapes = |disc: &Disc, count: u64, told: &'static str| -> Result<Vec<Draped>, Failure> {

@@ -6,6 +6,7 @@ use serde::Serialize;
 use taut_lab::cost::{self, FeatureRow};
 
 use crate::failure::{self, Failure};
+use crate::output::Folder;
 use crate::progress::Progress;
 use crate::table::aligned;
 
@@ -18,7 +19,10 @@ pub struct Args {
     /// CPU time of a feature in ms.
     #[arg(long, value_name = "MS", default_value = "500", value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub time: u32,
-    /// The rows as JSON on stdout.
+    /// Writes features.json into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<std::path::PathBuf>,
+    /// The rows as JSON on stdout; the table goes to stderr.
     #[arg(long)]
     pub json: bool,
 }
@@ -33,6 +37,7 @@ struct Report {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let folder = args.out.as_ref().map(|out| Folder::open(out, &["features.json"])).transpose()?;
     let progress = Progress::new(1);
     let rows = cost::features(args.side, Duration::from_millis(args.time.into()), |share| {
         progress.at(0, "features", share);
@@ -40,9 +45,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     .map_err(Failure::new)?;
     drop(progress);
     let report = Report { processor: super::processor(), width: taut::Width::best().name(), side: args.side, rows };
-    if args.json {
-        return failure::print(&(serde_json::to_string_pretty(&report).map_err(Failure::new)? + "\n"));
-    }
+    let json = serde_json::to_string_pretty(&report).map_err(Failure::new)? + "\n";
     let rows: Vec<Vec<String>> = report
         .rows
         .iter()
@@ -62,5 +65,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let n = report.side;
     let title =
         format!("{}, {}, {n} x {n}, per particle (ns: per particle and substep)\n", report.processor, report.width);
-    failure::print(&(title + &aligned(&header, &rows)))
+    let mut text = title + &aligned(&header, &rows);
+    if let Some(folder) = folder {
+        for path in folder.fill(&[json.as_bytes()])? {
+            text.push_str(&format!("Wrote {}\n", path.display()));
+        }
+    }
+    if args.json {
+        failure::print_aside(&text);
+        failure::print(&json)
+    } else {
+        failure::print(&text)
+    }
 }

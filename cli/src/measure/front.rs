@@ -14,7 +14,7 @@ use crate::failure::{self, Failure};
 use crate::output::Folder;
 use crate::progress::Work;
 use crate::table::aligned;
-use crate::{model, notes};
+use crate::{model, notes, picture};
 
 /// Raised where a row of an older run would mean something else.
 const VERSION: u32 = 1;
@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Scene::ALL.into_iter().filter(|s| args.scenes.is_empty() || args.scenes.contains(s)).collect();
     let generator = model::load(args.model.as_deref())?;
     let names: Vec<&'static str> =
-        ["front.csv", "front.json"].into_iter().chain(scenes.iter().map(|s| picture_name(*s))).collect();
+        ["front.csv", "front.json"].into_iter().chain(scenes.iter().map(|s| picture::name(*s))).collect();
     let folder = Folder::open(&args.out, &names)?;
     let digest = generator.info().training_digest.clone();
     let header = Header { measure: "front", version: VERSION, quick: args.quick, generator: &digest };
@@ -113,20 +113,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         failure::print(&json)
     } else {
         failure::print(&text)
-    }
-}
-
-/// The name of a scene's picture, with the length of life that a folder wants.
-fn picture_name(scene: Scene) -> &'static str {
-    match scene {
-        Scene::Hang2 => "hang2.png",
-        Scene::Edge => "edge.png",
-        Scene::Hang1 => "hang1.png",
-        Scene::Swing => "swing.png",
-        Scene::Curtain => "curtain.png",
-        Scene::Drape => "drape.png",
-        Scene::Flag => "flag.png",
-        Scene::Cusick => "cusick.png",
     }
 }
 
@@ -188,16 +174,4 @@ fn board_text(board: &Scoreboard) -> String {
         if board.cost == 1.0 { "" } else { "s" },
         aligned(&header, &rows)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_named_after_their_scenes() {
-        for scene in Scene::ALL {
-            assert_eq!(picture_name(scene), format!("{scene}.png"));
-        }
-    }
 }

@@ -5,14 +5,18 @@ use taut_lab::fabric::Fabric;
 use taut_onnx::Correction;
 
 use crate::failure::Failure;
-use crate::report;
+use crate::report as told;
 
 mod against;
 mod atlas;
 mod cusick;
+mod fall;
 mod features;
 mod front;
 mod invariance;
+mod page;
+mod peers;
+mod report;
 mod scenes;
 mod step;
 
@@ -23,12 +27,18 @@ pub enum Measure {
     Step(step::Args),
     /// What each feature costs in bytes and in time.
     Features(features::Args),
+    /// What it costs that a falling sheet stretches no more than so much, and a hundred capes.
+    Fall(fall::Args),
+    /// Other engines on the falling sheet, one thread: Bullet and rapier3d, if lab/peers was built.
+    Peers(peers::Args),
     /// Extremes of step, stiffness, mass, start and pins: where it is stable, bounded or refused.
     Atlas(atlas::Args),
     /// What must not depend on the frame rate, the frame times, the step, the mesh, the precision.
     Invariance(invariance::Args),
     /// Measures what every setting costs and how wrong it is: rows, pictures, a scoreboard of the corrections.
     Front(front::Args),
+    /// Measures all of it and writes one page that holds every table and picture.
+    Report(report::Args),
     /// Lists the scenes that measurements run.
     Scenes(scenes::Args),
     /// Compares with trajectories of another engine: strains by direction, silhouette, pictures, distance.
@@ -42,9 +52,12 @@ pub fn run(what: &Measure) -> Result<(), Failure> {
     match what {
         Measure::Step(args) => step::run(args),
         Measure::Features(args) => features::run(args),
+        Measure::Fall(args) => fall::run(args),
+        Measure::Peers(args) => peers::run(args),
         Measure::Atlas(args) => atlas::run(args),
         Measure::Invariance(args) => invariance::run(args),
         Measure::Front(args) => front::run(args),
+        Measure::Report(args) => report::run(args),
         Measure::Scenes(args) => scenes::run(args),
         Measure::Against(args) => against::run(args),
         Measure::Cusick(args) => cusick::run(args),
@@ -62,10 +75,11 @@ fn processor() -> String {
 /// cloth.
 pub fn fabric_of(c: &Correction) -> Fabric {
     Fabric::named(&c.description).unwrap_or_else(|| Fabric {
-        kind: report::NO_KIND,
-        stiffness: report::medians(c),
+        kind: told::NO_KIND,
+        stiffness: told::medians(c),
         density_kg_m2: c.density_kg_m2,
         hinge_rigidity_n_m: c.hinge_rigidity_n_m,
         measured: false,
+        softness: [1.0; 2],
     })
 }

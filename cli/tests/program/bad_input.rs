@@ -41,7 +41,7 @@ fn arguments() {
     ] {
         refused(home.path(), &["drape", "denim", option, value], named);
     }
-    refused(home.path(), &[], "drape, correct");
+    refused(home.path(), &[], "drape, film");
     refused(home.path(), &["drop"], "drop");
     refused(home.path(), &["drape"], "DESCRIPTION");
     refused(home.path(), &["correct", "denim"], "--out");

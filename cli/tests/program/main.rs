@@ -7,5 +7,6 @@ mod front;
 mod info;
 mod interrupt;
 mod measure;
+mod pictures;
 mod plan;
 mod run;

@@ -2,15 +2,35 @@
 
 use crate::layout::Layout;
 use crate::math::max;
+use crate::simd::{Pass, Vector};
 
 /// Share of its trace that is added to the diagonal of a block. A block is far stiffer along the sheet than across it;
 /// below this ratio its smallest eigenvalue is lost in the rounding of the others.
 const SHARE: f32 = 1e-5;
 
-/// Inverts one row of the blocks in place. Blocks of pinned particles and spare places (`mass` 0) become 0, which keeps
-/// them out of the search: the filter of Baraff and Witkin.
-#[inline(never)]
-pub(super) fn invert_row(l: &Layout, row: usize, mass: &[f32], blocks: &mut [&mut [f32]; 6]) {
+/// Inverts the blocks in place. Blocks of pinned particles and spare places (`mass` 0) become 0, which keeps them out of the
+/// search: the filter of Baraff and Witkin.
+///
+/// Plain loops: the compiler makes vectors of the width of them.
+pub(super) struct Invert<'p, 'a> {
+    pub l: &'p Layout,
+    pub mass: &'p [f32],
+    pub blocks: &'p mut [&'a mut [f32]; 6],
+}
+
+impl Pass for Invert<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V) {
+        for row in 0..self.l.rows {
+            invert_row(self.l, row, self.mass, self.blocks);
+        }
+    }
+}
+
+#[inline(always)]
+fn invert_row(l: &Layout, row: usize, mass: &[f32], blocks: &mut [&mut [f32]; 6]) {
     let at = l.row(row);
     let [xx, yy, zz, xy, xz, yz] = blocks.each_mut().map(|p| p.get_mut(at..at + l.width).unwrap_or(&mut []));
     let mass = crate::layout::span(mass, at, l.width);

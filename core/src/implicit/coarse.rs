@@ -11,6 +11,8 @@
 use super::blocks::inverse;
 use crate::layout::{Layout, read, write};
 use crate::math::round16;
+use crate::simd::{self, Pass, Vector};
+use crate::width::Supported;
 
 /// One plane: numbers, place of (row 0, column 0), numbers from a row to the next.
 #[derive(Clone, Copy)]
@@ -82,57 +84,112 @@ fn level(fine: Shape, memory: &mut [f32]) -> Option<(Level<'_>, &mut [f32])> {
 }
 
 /// to = sum over the fine nodes with the weights 1, 1/2, 1/4 of the hat around each coarse one.
-fn gather(fine: Shape, from: &[f32], coarse: Shape, to: &mut [f32]) {
-    for row in 0..coarse.rows {
-        let n = 2 * coarse.columns + 2;
-        let middle = fine.row(2 * row) - 1;
-        let pairs = |at: usize| from.get(at..at + n).unwrap_or(&[]).as_chunks::<2>().0;
-        let (above, here, below) = (pairs(middle - fine.stride), pairs(middle), pairs(middle + fine.stride));
-        let (above2, here2, below2) =
-            (above.get(1..).unwrap_or(&[]), here.get(1..).unwrap_or(&[]), below.get(1..).unwrap_or(&[]));
-        let at = coarse.row(row);
-        let to = to.get_mut(at..at + coarse.columns).unwrap_or(&mut []);
-        let left = above.iter().zip(here).zip(below);
-        let right = above2.iter().zip(here2).zip(below2);
-        for ((to, ((a, h), b)), ((a2, h2), b2)) in to.iter_mut().zip(left).zip(right) {
-            let t = |a: f32, h: f32, b: f32| h + 0.5 * (a + b);
-            *to = t(a[1], h[1], b[1]) + 0.5 * (t(a[0], h[0], b[0]) + t(a2[0], h2[0], b2[0]));
+///
+/// Plain loops, here and below: the compiler makes vectors of the width of them.
+struct Gather<'p> {
+    fine: Shape,
+    from: &'p [f32],
+    coarse: Shape,
+    to: &'p mut [f32],
+}
+
+impl Pass for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V) {
+        let Gather { fine, from, coarse, to } = self;
+        for row in 0..coarse.rows {
+            let n = 2 * coarse.columns + 2;
+            let middle = fine.row(2 * row) - 1;
+            let pairs = |at: usize| from.get(at..at + n).unwrap_or(&[]).as_chunks::<2>().0;
+            let (above, here, below) = (pairs(middle - fine.stride), pairs(middle), pairs(middle + fine.stride));
+            let (above2, here2, below2) =
+                (above.get(1..).unwrap_or(&[]), here.get(1..).unwrap_or(&[]), below.get(1..).unwrap_or(&[]));
+            let at = coarse.row(row);
+            let to = to.get_mut(at..at + coarse.columns).unwrap_or(&mut []);
+            let left = above.iter().zip(here).zip(below);
+            let right = above2.iter().zip(here2).zip(below2);
+            for ((to, ((a, h), b)), ((a2, h2), b2)) in to.iter_mut().zip(left).zip(right) {
+                let t = |a: f32, h: f32, b: f32| h + 0.5 * (a + b);
+                *to = t(a[1], h[1], b[1]) + 0.5 * (t(a[0], h[0], b[0]) + t(a2[0], h2[0], b2[0]));
+            }
         }
     }
 }
 
 /// to += the bilinear interpolation of the coarse nodes.
-fn spread(coarse: Shape, from: &[f32], fine: Shape, to: &mut [f32]) {
-    for row in 0..fine.rows {
-        let at = coarse.row(row / 2);
-        let below = coarse.row(row.div_ceil(2));
-        let n = coarse.columns;
-        let cut = |at: usize| from.get(at..at + n + 1).unwrap_or(&[]);
-        let (a, b) = (cut(at), cut(below));
-        let (a2, b2) = (a.get(1..).unwrap_or(&[]), b.get(1..).unwrap_or(&[]));
-        let at = fine.row(row);
-        let pairs = to.get_mut(at..at + 2 * n).unwrap_or(&mut []).as_chunks_mut::<2>().0;
-        for (((to, (a, b)), a2), b2) in pairs.iter_mut().zip(a.iter().zip(b)).zip(a2).zip(b2) {
-            let (t, t2) = (0.5 * (a + b), 0.5 * (a2 + b2));
-            to[0] += t;
-            to[1] += 0.5 * (t + t2);
+struct Spread<'p> {
+    coarse: Shape,
+    from: &'p [f32],
+    fine: Shape,
+    to: &'p mut [f32],
+}
+
+impl Pass for Spread<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V) {
+        let Spread { coarse, from, fine, to } = self;
+        for row in 0..fine.rows {
+            let at = coarse.row(row / 2);
+            let below = coarse.row(row.div_ceil(2));
+            let n = coarse.columns;
+            let cut = |at: usize| from.get(at..at + n + 1).unwrap_or(&[]);
+            let (a, b) = (cut(at), cut(below));
+            let (a2, b2) = (a.get(1..).unwrap_or(&[]), b.get(1..).unwrap_or(&[]));
+            let at = fine.row(row);
+            let pairs = to.get_mut(at..at + 2 * n).unwrap_or(&mut []).as_chunks_mut::<2>().0;
+            for (((to, (a, b)), a2), b2) in pairs.iter_mut().zip(a.iter().zip(b)).zip(a2).zip(b2) {
+                let (t, t2) = (0.5 * (a + b), 0.5 * (a2 + b2));
+                to[0] += t;
+                to[1] += 0.5 * (t + t2);
+            }
+        }
+    }
+}
+
+/// to = blocks * from.
+struct Multiply<'p, 'a> {
+    blocks: &'p [&'a mut [f32]; 6],
+    from: &'p [&'a mut [f32]; 3],
+    to: &'p mut [&'a mut [f32]; 3],
+}
+
+impl Pass for Multiply<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V) {
+        let [rx, ry, rz] = self.from.each_ref().map(|p| p.iter());
+        let [xx, yy, zz, xy, xz, yz] = self.blocks.each_ref().map(|p| p.iter());
+        let [zx, zy, z_z] = self.to.each_mut().map(|p| p.iter_mut());
+        let outs = zx.zip(zy).zip(z_z);
+        let r = rx.zip(ry).zip(rz);
+        for (((((x, y), z), ((a, b), c)), ((d, e), f)), ((rx, ry), rz)) in
+            outs.zip(xx.zip(yy).zip(zz)).zip(xy.zip(xz).zip(yz)).zip(r)
+        {
+            *x = a * rx + d * ry + e * rz;
+            *y = d * rx + b * ry + f * rz;
+            *z = e * rx + f * ry + c * rz;
         }
     }
 }
 
 /// Computes the inverse blocks of all levels from the mass and the blocks of the fine grid, which are not inverted yet.
-pub(super) fn prepare(l: &Layout, mass: &[f32], blocks: [&[f32]; 6], memory: &mut [f32]) {
-    prepare_level(Shape::fine(l), mass, blocks, 4.0, memory);
+pub(super) fn prepare(width: Supported, l: &Layout, mass: &[f32], blocks: [&[f32]; 6], memory: &mut [f32]) {
+    prepare_level(width, Shape::fine(l), mass, blocks, 4.0, memory);
 }
 
-fn prepare_level(fine: Shape, mass: &[f32], blocks: [&[f32]; 6], h2: f32, memory: &mut [f32]) {
+fn prepare_level(width: Supported, fine: Shape, mass: &[f32], blocks: [&[f32]; 6], h2: f32, memory: &mut [f32]) {
     let Some((level, rest)) = level(fine, memory) else {
         return;
     };
     let Level { shape, mass: sum, blocks: mut sums, .. } = level;
-    gather(fine, mass, shape, sum);
+    simd::run(width, Gather { fine, from: mass, coarse: shape, to: sum });
     for (to, from) in sums.iter_mut().zip(blocks) {
-        gather(fine, from, shape, to);
+        simd::run(width, Gather { fine, from, coarse: shape, to });
     }
     for row in 0..shape.rows {
         for column in 0..shape.columns {
@@ -142,7 +199,7 @@ fn prepare_level(fine: Shape, mass: &[f32], blocks: [&[f32]; 6], h2: f32, memory
             }
         }
     }
-    prepare_level(shape, sum, sums.each_ref().map(|p| &**p), 4.0 * h2, rest);
+    prepare_level(width, shape, sum, sums.each_ref().map(|p| &**p), 4.0 * h2, rest);
     let springs = 2.0 / 3.0 / h2;
     let inertia = 4.0 / 9.0 - springs;
     for row in 0..shape.rows {
@@ -162,35 +219,22 @@ fn prepare_level(fine: Shape, mass: &[f32], blocks: [&[f32]; 6], h2: f32, memory
 }
 
 /// Adds the coarse parts to the preconditioned residual `z`; `r` must be 0 where nothing moves.
-pub(super) fn add(l: &Layout, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
-    add_level(Shape::fine(l), r, z, memory);
+pub(super) fn add(width: Supported, l: &Layout, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
+    add_level(width, Shape::fine(l), r, z, memory);
 }
 
-fn add_level(fine: Shape, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
+fn add_level(width: Supported, fine: Shape, r: [&[f32]; 3], z: [&mut [f32]; 3], memory: &mut [f32]) {
     let Some((level, rest)) = level(fine, memory) else {
         return;
     };
     let Level { shape, blocks, mut residual, mut result, .. } = level;
     for (to, from) in residual.iter_mut().zip(r) {
-        gather(fine, from, shape, to);
+        simd::run(width, Gather { fine, from, coarse: shape, to });
     }
-    {
-        let [rx, ry, rz] = residual.each_ref().map(|p| p.iter());
-        let [xx, yy, zz, xy, xz, yz] = blocks.each_ref().map(|p| p.iter());
-        let [zx, zy, z_z] = result.each_mut().map(|p| p.iter_mut());
-        let outs = zx.zip(zy).zip(z_z);
-        let r = rx.zip(ry).zip(rz);
-        for (((((x, y), z), ((a, b), c)), ((d, e), f)), ((rx, ry), rz)) in
-            outs.zip(xx.zip(yy).zip(zz)).zip(xy.zip(xz).zip(yz)).zip(r)
-        {
-            *x = a * rx + d * ry + e * rz;
-            *y = d * rx + b * ry + f * rz;
-            *z = e * rx + f * ry + c * rz;
-        }
-    }
+    simd::run(width, Multiply { blocks: &blocks, from: &residual, to: &mut result });
     let residual = residual.each_ref().map(|p| &**p);
-    add_level(shape, residual, result.each_mut().map(|p| &mut **p), rest);
+    add_level(width, shape, residual, result.each_mut().map(|p| &mut **p), rest);
     for (to, from) in z.into_iter().zip(&result) {
-        spread(shape, from, fine, to);
+        simd::run(width, Spread { coarse: shape, from, fine, to });
     }
 }

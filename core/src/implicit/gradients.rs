@@ -4,9 +4,12 @@
 //! for x, y and z one after the other, added to 16 lanes of f64 after the row, and those to one number by a tree.
 
 use super::coarse;
-use super::operator::{Linear, apply_row};
+use super::operator::{Linear, apply};
+use crate::around::LANES;
 use crate::force::{Planes, View};
 use crate::layout::{Layout, span};
+use crate::simd::{self, Pass, Three, Vector};
+use crate::width::Supported;
 
 /// The 16 lanes of a sum.
 struct Sum([f64; 16]);
@@ -44,6 +47,7 @@ impl Sum {
 
 /// What the iterations work on.
 pub(super) struct System<'a, 'b> {
+    pub width: Supported,
     pub l: &'a Layout,
     /// The shape of the linearisation.
     pub x: View<'a>,
@@ -54,6 +58,7 @@ pub(super) struct System<'a, 'b> {
     pub floating: bool,
 }
 
+#[inline(always)]
 fn pairs<'a>(a: View<'a>, b: View<'a>) -> [(&'a [f32], &'a [f32]); 3] {
     [(a.x, b.x), (a.y, b.y), (a.z, b.z)]
 }
@@ -64,66 +69,169 @@ fn ratio(a: f64, b: f64) -> f32 {
     if q > 0.0 && q < f32::INFINITY { q } else { 0.0 }
 }
 
-impl System<'_, '_> {
-    /// Adds to `change` what `iterations` find: A change = residual. The residual is used up; `image` holds the
-    /// preconditioned residual or A search, whichever is needed next.
-    pub fn solve<const SHEAR: bool, const BEND: bool>(
-        &self,
-        iterations: u32,
-        change: &mut Planes<'_>,
-        residual: &mut Planes<'_>,
-        search: &mut Planes<'_>,
-        image: &mut Planes<'_>,
-        levels: &mut [f32],
-    ) {
-        let l = self.l;
-        if self.floating {
-            self.carry(change, residual);
-        }
-        let (mut energy, mut share) = (self.precondition(residual.view(), image, levels), 0.0);
-        for _ in 0..iterations {
-            let mut sum = Sum::new();
-            // the directions are two rows ahead of the operator, which reads them
-            for row in 0..l.rows + 2 {
-                if row < l.rows {
+/// What the iterations need of the memory.
+pub(super) struct Work<'p, 'a> {
+    pub change: &'p mut Planes<'a>,
+    pub residual: &'p mut Planes<'a>,
+    pub search: &'p mut Planes<'a>,
+    pub image: &'p mut Planes<'a>,
+    pub levels: &'p mut [f32],
+}
+
+/// image = A search, after the search has taken the preconditioned residual, in `image`, on: that plus `share` times what it
+/// was. Answers with the sum of search.image.
+pub(super) struct Image<'p, 'a, 'b> {
+    pub l: &'p Layout,
+    pub x: View<'p>,
+    pub linear: &'p Linear<'b>,
+    /// None: the search stays as it is.
+    pub share: Option<f32>,
+    pub search: &'p mut Planes<'a>,
+    pub image: &'p mut Planes<'a>,
+}
+
+impl Pass for Image<'_, '_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) -> f64 {
+        let (l, mut sum) = (self.l, Sum::new());
+        // the directions are two rows ahead of the operator, which reads them
+        for row in 0..l.rows + 2 {
+            if row < l.rows
+                && let Some(share) = self.share
+            {
+                let factor = zero.all(share);
+                for column in (0..l.width).step_by(V::LANES) {
+                    let at = l.at(row, column);
+                    let mut p = Three::read(zero, axes(self.image.view()), at);
                     // the directions of an earlier solve are not multiplied by 0: they may be no numbers
-                    each(l, row, image.view(), search, |z, p| if share > 0.0 { z + share * p } else { z });
-                }
-                if row >= 2 {
-                    apply_row::<SHEAR, BEND>(l, row - 2, self.x, self.linear, search.view(), image);
-                    sum.add_row(l, row - 2, pairs(search.view(), image.view()));
+                    if share > 0.0 {
+                        p = p.plus(Three::read(zero, axes(self.search.view()), at).times(factor));
+                    }
+                    p.write([&mut *self.search.x, &mut *self.search.y, &mut *self.search.z], at);
                 }
             }
-            let way = ratio(energy, sum.total());
-            for row in 0..l.rows {
-                each(l, row, search.view(), change, |p, v| v + way * p);
-                each(l, row, image.view(), residual, |q, r| r - way * q);
+            if row >= 2 {
+                for column in (0..l.width).step_by(LANES) {
+                    let at = l.at(row - 2, column);
+                    apply(zero, l.stride, at, self.x, self.linear, self.search.view(), self.image);
+                }
+                sum.add_row(l, row - 2, pairs(self.search.view(), self.image.view()));
             }
-            let next = self.precondition(residual.view(), image, levels);
+        }
+        sum.total()
+    }
+}
+
+/// Goes a way along the search, if any, and puts the residual, multiplied by the inverse blocks, into `image`.
+struct Advance<'p, 'a> {
+    l: &'p Layout,
+    blocks: [&'p [f32]; 6],
+    way: Option<f32>,
+    change: &'p mut Planes<'a>,
+    residual: &'p mut Planes<'a>,
+    search: View<'p>,
+    image: &'p mut Planes<'a>,
+}
+
+impl Pass for Advance<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) {
+        let l = self.l;
+        let [xx, yy, zz, xy, xz, yz] = self.blocks;
+        for row in 0..l.rows {
+            for column in (0..l.width).step_by(V::LANES) {
+                let at = l.at(row, column);
+                let mut r = Three::read(zero, axes(self.residual.view()), at);
+                if let Some(way) = self.way {
+                    let way = zero.all(way);
+                    let p = Three::read(zero, axes(self.search), at);
+                    let v = Three::read(zero, axes(self.change.view()), at).plus(p.times(way));
+                    v.write([&mut *self.change.x, &mut *self.change.y, &mut *self.change.z], at);
+                    r = r.minus(Three::read(zero, axes(self.image.view()), at).times(way));
+                    r.write([&mut *self.residual.x, &mut *self.residual.y, &mut *self.residual.z], at);
+                }
+                let (a, b, c) = (zero.read(xx, at), zero.read(yy, at), zero.read(zz, at));
+                let (d, e, f) = (zero.read(xy, at), zero.read(xz, at), zero.read(yz, at));
+                let Three([x, y, z]) = r;
+                let z = Three([a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z]);
+                z.write([&mut *self.image.x, &mut *self.image.y, &mut *self.image.z], at);
+            }
+        }
+    }
+}
+
+/// Takes the way of the centre of mass off z, 0 where nothing is free. Answers with the sum of r.z.
+struct Finish<'p, 'a> {
+    l: &'p Layout,
+    free: &'p [f32],
+    centre: [f32; 3],
+    residual: View<'p>,
+    z: &'p mut Planes<'a>,
+}
+
+impl Pass for Finish<'_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, zero: V) -> f64 {
+        let (l, mut sum) = (self.l, Sum::new());
+        let [x, y, z] = self.centre;
+        let centre = Three([zero.all(x), zero.all(y), zero.all(z)]);
+        for row in 0..l.rows {
+            for column in (0..l.width).step_by(V::LANES) {
+                let at = l.at(row, column);
+                let z = Three::read(zero, axes(self.z.view()), at).minus(centre).times(zero.read(self.free, at));
+                z.write([&mut *self.z.x, &mut *self.z.y, &mut *self.z.z], at);
+            }
+            sum.add_row(l, row, pairs(self.residual, self.z.view()));
+        }
+        sum.total()
+    }
+}
+
+#[inline(always)]
+fn axes(view: View<'_>) -> [&[f32]; 3] {
+    [view.x, view.y, view.z]
+}
+
+impl System<'_, '_> {
+    /// Adds to the change what `iterations` find: A change = residual. The residual is used up; `image` holds the
+    /// preconditioned residual or A search, whichever is needed next.
+    pub fn solve(&self, iterations: u32, work: &mut Work<'_, '_>) {
+        if self.floating {
+            self.carry(work.change, work.residual);
+        }
+        let (mut energy, mut share) = (self.advance(None, work), 0.0);
+        for _ in 0..iterations {
+            let image = Image {
+                l: self.l,
+                x: self.x,
+                linear: self.linear,
+                share: Some(share),
+                search: work.search,
+                image: work.image,
+            };
+            let way = ratio(energy, simd::run(self.width, image));
+            let next = self.advance(Some(way), work);
             share = ratio(next, energy);
             energy = next;
         }
     }
 
-    /// z = the preconditioned residual, and the sum of r.z.
-    fn precondition(&self, r: View<'_>, z: &mut Planes<'_>, levels: &mut [f32]) -> f64 {
-        let (l, mut sum) = (self.l, Sum::new());
-        for row in 0..l.rows {
-            self.precondition_row(row, r, z);
-        }
-        coarse::add(l, [r.x, r.y, r.z], [&mut *z.x, &mut *z.y, &mut *z.z], levels);
-        let centre = if self.floating { self.centre(z.view()) } else { [0.0; 3] };
-        for row in 0..l.rows {
-            let at = l.row(row);
-            let free = span(self.linear.free, at, l.width);
-            for (z, centre) in [&mut *z.x, &mut *z.y, &mut *z.z].into_iter().zip(centre) {
-                for (z, free) in z.get_mut(at..at + l.width).unwrap_or(&mut []).iter_mut().zip(free) {
-                    *z = free * (*z - centre);
-                }
-            }
-            sum.add_row(l, row, pairs(r, z.view()));
-        }
-        sum.total()
+    /// Goes a way along the search; then z, in `image`, is the preconditioned residual. Answers with the sum of r.z.
+    fn advance(&self, way: Option<f32>, work: &mut Work<'_, '_>) -> f64 {
+        let Work { change, residual, search, image, levels } = work;
+        let (l, blocks) = (self.l, self.blocks);
+        let advance = Advance { l, blocks, way, change, residual, search: search.view(), image };
+        simd::run(self.width, advance);
+        let r = residual.view();
+        coarse::add(self.width, l, axes(r), [&mut *image.x, &mut *image.y, &mut *image.z], levels);
+        let centre = if self.floating { self.centre(image.view()) } else { [0.0; 3] };
+        simd::run(self.width, Finish { l, free: self.linear.free, centre, residual: r, z: image })
     }
 
     /// The mean of a velocity, weighted by the masses of the operator.
@@ -172,36 +280,6 @@ impl System<'_, '_> {
                     *residual -= way * mass;
                 }
             }
-        }
-    }
-
-    /// One row of z = inverse blocks * r.
-    #[inline(never)]
-    fn precondition_row(&self, row: usize, r: View<'_>, z: &mut Planes<'_>) {
-        let (at, n) = (self.l.row(row), self.l.width);
-        let cut = |p| span(p, at, n);
-        let [xx, yy, zz, xy, xz, yz] = self.blocks.map(cut);
-        let (rx, ry, rz) = (cut(r.x), cut(r.y), cut(r.z));
-        let [zx, zy, zz_out] = [&mut *z.x, &mut *z.y, &mut *z.z].map(|p| p.get_mut(at..at + n).unwrap_or(&mut []));
-        let r = rx.iter().zip(ry).zip(rz);
-        let outs = zx.iter_mut().zip(zy).zip(zz_out);
-        let diagonal = xx.iter().zip(yy).zip(zz);
-        let rest = xy.iter().zip(xz).zip(yz);
-        for (((((x, y), z), ((a, b), c)), ((d, e), f)), ((rx, ry), rz)) in outs.zip(diagonal).zip(rest).zip(r) {
-            *x = a * rx + d * ry + e * rz;
-            *y = d * rx + b * ry + f * rz;
-            *z = e * rx + f * ry + c * rz;
-        }
-    }
-}
-
-/// b = f(a, b) for one row of three planes.
-#[inline(always)]
-fn each(l: &Layout, row: usize, a: View<'_>, b: &mut Planes<'_>, f: impl Fn(f32, f32) -> f32) {
-    let (at, n) = (l.row(row), l.width);
-    for (a, b) in [(a.x, &mut *b.x), (a.y, &mut *b.y), (a.z, &mut *b.z)] {
-        for (a, b) in span(a, at, n).iter().zip(b.get_mut(at..at + n).unwrap_or(&mut [])) {
-            *b = f(*a, *b);
         }
     }
 }

@@ -5,12 +5,12 @@
 //! (a limit, a collider, a teleport, the caller) shifts its past along, as if it had always moved like that: a particle
 //! that hits the floor is not thrown back by the speed that it had. After a substep s becomes (s - dt e) / 3.
 
-use super::gradients::System;
-use super::operator::{apply_row, diagonal_row, residual_row};
+use super::gradients::{Image, System, Work};
+use super::operator::{Diagonal, Linearise, Residual};
 use super::{FLAGS, Implicit, blocks, coarse};
 use crate::force::{Planes, Substep};
 use crate::layout::{Layout, span, write};
-use crate::{Cloth, Solver};
+use crate::{Cloth, Solver, simd};
 
 /// Springs are linearised this often in a substep: once where they are, which is safe, and once where that leads, which is
 /// accurate. Once alone loses the swing, since it takes the turning of a spring for a stretch that must be stopped.
@@ -68,12 +68,7 @@ impl Cloth<'_> {
                     self.outer_forces(substep);
                 }
             }
-            match (l.shear, l.bend) {
-                (false, false) => self.find_change::<false, false>(c, b, again),
-                (false, true) => self.find_change::<false, true>(c, b, again),
-                (true, false) => self.find_change::<true, false>(c, b, again),
-                (true, true) => self.find_change::<true, true>(c, b, again),
-            }
+            self.find_change(c, b, again);
         }
         self.apply_change(b);
         if bdf2 {
@@ -118,7 +113,7 @@ impl Cloth<'_> {
     }
 
     /// Solves for the change of the velocities, from the one that is there.
-    fn find_change<const SHEAR: bool, const BEND: bool>(&mut self, c: &Substep, b: f32, again: bool) {
+    fn find_change(&mut self, c: &Substep, b: f32, again: bool) {
         let l = self.layout;
         let x = self.x.view();
         let outer = if l.force() {
@@ -129,30 +124,26 @@ impl Cloth<'_> {
             [&[][..]; 3]
         };
         let Implicit { known, change, residual, search, image, linear, blocks, coarse, .. } = &mut self.implicit;
-        linear.linearise(&l, c, x, &self.springs);
-        for row in 0..l.rows {
-            let v = self.v.view();
-            residual_row::<SHEAR, BEND>(&l, row, b, c.weight, x, v, known.view(), linear, outer, residual);
-        }
-        linear.clamp(&l, b);
-        for row in 0..l.rows {
-            diagonal_row::<SHEAR, BEND>(&l, row, x, linear, blocks);
-        }
-        coarse::prepare(&l, linear.mass, blocks.each_ref().map(|p| &**p), coarse);
-        for row in 0..l.rows {
-            blocks::invert_row(&l, row, linear.mass, blocks);
-            if !again {
-                apply_row::<SHEAR, BEND>(&l, row, x, linear, change.view(), image);
-                for (r, q) in residual.axes().into_iter().zip(image.axes()) {
+        let (width, v) = (self.width, self.v.view());
+        simd::run(width, Linearise { l: &l, c, x, springs: &self.springs, linear });
+        let (weight, known) = (c.weight, known.view());
+        simd::run(width, Residual { l: &l, b, weight, x, v, known, linear, outer, residual });
+        simd::run(width, Diagonal { l: &l, b, x, linear, blocks });
+        coarse::prepare(width, &l, linear.mass, blocks.each_ref().map(|p| &**p), coarse);
+        simd::run(width, blocks::Invert { l: &l, mass: linear.mass, blocks });
+        if !again {
+            simd::run(width, Image { l: &l, x, linear, share: None, search: change, image });
+            for (r, q) in residual.axes().into_iter().zip(image.axes()) {
+                for row in 0..l.rows {
                     for (r, q) in row_mut(&l, row, r).iter_mut().zip(row_of(&l, row, q)) {
                         *r -= q;
                     }
                 }
             }
         }
-        let system =
-            System { l: &l, x, linear, blocks: blocks.each_ref().map(|p| &**p), floating: self.pins.count == 0 };
-        system.solve::<SHEAR, BEND>(self.def.cg_iterations, change, residual, search, image, coarse);
+        let blocks = blocks.each_ref().map(|p| &**p);
+        let system = System { width, l: &l, x, linear, blocks, floating: self.pins.count == 0 };
+        system.solve(self.def.cg_iterations, &mut Work { change, residual, search, image, levels: coarse });
     }
 
     /// v += change, x += b change; the change is 0 after it.

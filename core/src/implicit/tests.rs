@@ -5,12 +5,12 @@ extern crate std;
 use std::vec;
 use std::vec::Vec;
 
-use super::gradients::System;
-use super::operator::{apply_row, diagonal_row, residual_row};
+use super::gradients::{Image, System, Work};
+use super::operator::{Diagonal, Linearise, Residual};
 use super::{Implicit, blocks, coarse};
 use crate::force::Planes;
 use crate::layout::{read, write};
-use crate::{Cloth, ClothDef, Families, Features, Grid, GridDef, Solver, noise};
+use crate::{Cloth, ClothDef, Families, Features, Grid, GridDef, Solver, noise, simd};
 
 const B: f32 = 0.02;
 const SIZES: [(u32, u32, Families); 8] = [
@@ -138,28 +138,13 @@ fn linearised(c: &mut Cloth<'_>) {
     }
     let (x, v) = (c.x.view(), c.v.view());
     let Implicit { residual, known, linear, blocks, coarse, .. } = &mut c.implicit;
-    linear.linearise(&l, &k, x, &c.springs);
-    macro_rules! each_row {
-        ($s:literal, $b:literal) => {{
-            for row in 0..l.rows {
-                residual_row::<$s, $b>(&l, row, B, k.weight, x, v, known.view(), linear, [&[]; 3], residual);
-            }
-            linear.clamp(&l, B);
-            for row in 0..l.rows {
-                diagonal_row::<$s, $b>(&l, row, x, linear, blocks);
-            }
-        }};
-    }
-    match (l.shear, l.bend) {
-        (false, false) => each_row!(false, false),
-        (false, true) => each_row!(false, true),
-        (true, false) => each_row!(true, false),
-        (true, true) => each_row!(true, true),
-    }
-    coarse::prepare(&l, linear.mass, blocks.each_ref().map(|p| &**p), coarse);
-    for row in 0..l.rows {
-        blocks::invert_row(&l, row, linear.mass, blocks);
-    }
+    let (width, known) = (c.width, known.view());
+    simd::run(width, Linearise { l: &l, c: &k, x, springs: &c.springs, linear });
+    let outer = [&[][..]; 3];
+    simd::run(width, Residual { l: &l, b: B, weight: k.weight, x, v, known, linear, outer, residual });
+    simd::run(width, Diagonal { l: &l, b: B, x, linear, blocks });
+    coarse::prepare(width, &l, linear.mass, blocks.each_ref().map(|p| &**p), coarse);
+    simd::run(width, blocks::Invert { l: &l, mass: linear.mass, blocks });
 }
 
 /// A search for a search of Gaussian numbers, 0 at pins; returns both.
@@ -183,14 +168,7 @@ fn image_of(c: &mut Cloth<'_>, search: &[f64]) -> Vec<f64> {
         write(to.y, at, search[3 * i + 1] as f32);
         write(to.z, at, search[3 * i + 2] as f32);
     }
-    for row in 0..l.rows {
-        match (l.shear, l.bend) {
-            (false, false) => apply_row::<false, false>(&l, row, x, linear, to.view(), image),
-            (false, true) => apply_row::<false, true>(&l, row, x, linear, to.view(), image),
-            (true, false) => apply_row::<true, false>(&l, row, x, linear, to.view(), image),
-            (true, true) => apply_row::<true, true>(&l, row, x, linear, to.view(), image),
-        }
-    }
+    simd::run(c.width, Image { l: &l, x, linear, share: None, search: to, image });
     list(c, &c.implicit.image)
 }
 
@@ -253,13 +231,9 @@ fn solve(c: &mut Cloth<'_>, iterations: u32) {
     for p in [&mut *change.x, &mut *change.y, &mut *change.z] {
         p.fill(0.0);
     }
-    let system = System { l: &l, x, linear, blocks: blocks.each_ref().map(|p| &**p), floating: false };
-    match (l.shear, l.bend) {
-        (false, false) => system.solve::<false, false>(iterations, change, residual, search, image, coarse),
-        (false, true) => system.solve::<false, true>(iterations, change, residual, search, image, coarse),
-        (true, false) => system.solve::<true, false>(iterations, change, residual, search, image, coarse),
-        (true, true) => system.solve::<true, true>(iterations, change, residual, search, image, coarse),
-    }
+    let blocks = blocks.each_ref().map(|p| &**p);
+    let system = System { width: c.width, l: &l, x, linear, blocks, floating: false };
+    system.solve(iterations, &mut Work { change, residual, search, image, levels: coarse });
 }
 
 /// The coarse levels are there for the sake of few iterations: on a stiff sheet of 33 x 40, loaded by its weight, 20 of

@@ -1,63 +1,69 @@
 //! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.
 
-use super::{FabricLaw, Price, Row, StepLaw};
+use super::strains::Strains;
+use super::{FabricLaw, Price, Row};
 
 /// A row for each hold, in the order of their numbers.
 #[rustfmt::skip]
 pub(super) const ROWS: [Row; 5] = [
     // Edge
     Row {
-        plain: StepLaw { constant: -0.419, grid: 2.220, step: 0.969, margin: 0.039 },
-        inertia: StepLaw { constant: 0.033, grid: 1.950, step: 0.974, margin: 0.029 },
-        tethers: StepLaw { constant: -4.833, grid: 1.088, step: 0.552, margin: 0.546 },
-        fabric: FabricLaw { constant: -0.413, grid: 0.097, warp: 0.985, weft: 0.017, shear: -0.003, margin: 0.095 },
-        plain_price: Price { constant: 0.55, grid: 5.53, step: 0.75 },
-        tethers_price: Price { constant: 5.36, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 73.78, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 94.51, grid: 1738.09, step: 0.00 },
+        plain: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-2.775, -4.126, -4.931, -5.504, -6.312, -6.884, -8.263], &[-1.264, -2.516, -3.304, -3.863, -4.669, -5.242, -6.611], &[-0.090, -1.063, -1.762, -2.285, -3.068, -3.624, -4.987]], margin: 0.076 },
+        inertia: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-3.111, -4.476, -5.287, -5.852, -6.659, -7.222, -8.522], &[-1.756, -3.055, -3.843, -4.415, -5.215, -5.780, -7.106], &[-0.201, -1.734, -2.479, -3.030, -3.814, -4.379, -5.749]], margin: 0.030 },
+        tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-5.884, -7.220, -8.413, -9.884], &[-4.992, -6.058, -7.319, -8.408], &[-4.565, -4.565, -6.061, -7.407]], margin: 0.403 },
+        whole: FabricLaw { constant: -0.495, grid: 0.134, warp: 0.989, weft: 0.032, shear: -0.021, margin: 0.062 },
+        implicit: FabricLaw { constant: -0.434, grid: 0.115, warp: 0.989, weft: 0.038, shear: -0.027, margin: 0.066 },
+        plain_price: Price { constant: 0.57, grid: 6.23, step: 1.02 },
+        tethers_price: Price { constant: 3.57, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 17.95, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 121.97, grid: 2598.22, step: 0.00 },
     },
     // Hooks
     Row {
-        plain: StepLaw { constant: 0.058, grid: 2.379, step: 0.892, margin: 0.473 },
-        inertia: StepLaw { constant: -1.215, grid: 1.771, step: 0.674, margin: 0.641 },
-        tethers: StepLaw { constant: -1.828, grid: 1.724, step: 0.629, margin: 0.257 },
-        fabric: FabricLaw { constant: -2.779, grid: 1.317, warp: 0.468, weft: -0.040, shear: 0.573, margin: 0.568 },
-        plain_price: Price { constant: 0.57, grid: 3.18, step: 0.59 },
-        tethers_price: Price { constant: 3.86, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 146.30, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 90.77, grid: 1787.55, step: 0.00 },
+        plain: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-1.151, -2.269, -3.238, -3.753, -4.679, -5.501, -5.710], &[0.061, -0.879, -1.430, -1.847, -2.691, -3.161, -4.477], &[1.096, 0.354, -0.100, -0.598, -1.202, -1.617, -2.622]], margin: 0.188 },
+        inertia: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-1.868, -3.185, -3.947, -4.582, -4.879, -4.879, -5.365], &[-0.833, -1.788, -2.338, -2.729, -3.639, -3.887, -4.787], &[0.508, -0.721, -1.318, -1.603, -2.069, -2.495, -3.444]], margin: 0.214 },
+        tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-1.735, -2.537, -3.510, -4.525], &[-0.557, -1.483, -1.982, -3.074], &[0.503, -0.102, -1.219, -1.777]], margin: 0.185 },
+        whole: FabricLaw { constant: -0.089, grid: 0.641, warp: 0.548, weft: 0.345, shear: 0.107, margin: 0.461 },
+        implicit: FabricLaw { constant: -2.779, grid: 1.317, warp: 0.468, weft: -0.040, shear: 0.573, margin: 0.568 },
+        plain_price: Price { constant: 0.73, grid: 2.64, step: 0.42 },
+        tethers_price: Price { constant: 3.21, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 42.75, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 143.67, grid: 2305.48, step: 0.00 },
     },
     // Corners
     Row {
-        plain: StepLaw { constant: -0.417, grid: 2.778, step: 0.960, margin: 0.042 },
-        inertia: StepLaw { constant: 0.683, grid: 1.832, step: 0.916, margin: 0.063 },
-        tethers: StepLaw { constant: -0.525, grid: 1.354, step: 0.811, margin: 0.160 },
-        fabric: FabricLaw { constant: -1.189, grid: 0.994, warp: 0.344, weft: 0.579, shear: 0.077, margin: 0.127 },
-        plain_price: Price { constant: 0.56, grid: 2.50, step: 0.52 },
-        tethers_price: Price { constant: 5.40, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 133.42, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 93.82, grid: 1635.27, step: 0.00 },
+        plain: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-1.269, -2.510, -3.288, -3.856, -4.641, -5.225, -6.608], &[0.545, -0.658, -1.359, -1.878, -2.623, -3.174, -4.529], &[2.284, 1.205, 0.455, -0.048, -0.756, -1.255, -2.521]], margin: 0.030 },
+        inertia: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-2.250, -3.510, -4.280, -4.840, -5.636, -6.203, -7.575], &[-1.071, -2.216, -2.938, -3.468, -4.234, -4.789, -6.122], &[0.086, -1.067, -1.707, -2.196, -2.909, -3.436, -4.711]], margin: 0.030 },
+        tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-2.616, -3.802, -5.113, -6.477], &[-1.804, -2.780, -3.898, -5.124], &[-1.111, -2.067, -3.014, -4.052]], margin: 0.077 },
+        whole: FabricLaw { constant: -1.193, grid: 0.994, warp: 0.341, weft: 0.581, shear: 0.078, margin: 0.130 },
+        implicit: FabricLaw { constant: -1.189, grid: 0.994, warp: 0.344, weft: 0.579, shear: 0.077, margin: 0.127 },
+        plain_price: Price { constant: 0.55, grid: 4.24, step: 0.62 },
+        tethers_price: Price { constant: 1.43, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 28.59, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 113.16, grid: 2619.82, step: 0.00 },
     },
     // Corner
     Row {
-        plain: StepLaw { constant: -0.502, grid: 2.442, step: 0.824, margin: 0.226 },
-        inertia: StepLaw { constant: 0.213, grid: 1.380, step: 0.687, margin: 0.207 },
-        tethers: StepLaw { constant: -0.800, grid: 0.429, step: 0.327, margin: 0.286 },
-        fabric: FabricLaw { constant: -0.367, grid: 0.860, warp: 0.081, weft: 0.867, shear: 0.052, margin: 0.155 },
-        plain_price: Price { constant: 0.88, grid: 4.54, step: 0.60 },
-        tethers_price: Price { constant: 4.61, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 306.13, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 104.81, grid: 3146.17, step: 0.00 },
+        plain: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-0.908, -2.152, -2.877, -3.385, -4.102, -4.563, -5.389], &[1.096, -0.235, -0.991, -1.504, -2.223, -2.728, -3.933], &[2.899, 1.767, 1.005, 0.429, -0.339, -0.869, -2.124]], margin: 0.030 },
+        inertia: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-1.903, -3.016, -3.578, -3.954, -4.494, -4.893, -5.847], &[-0.662, -1.877, -2.532, -2.952, -3.457, -3.796, -4.606], &[0.423, -0.707, -1.427, -1.972, -2.689, -2.897, -3.832]], margin: 0.111 },
+        tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-2.037, -2.298, -2.944, -3.743], &[-1.725, -2.167, -2.466, -2.787], &[-1.413, -1.982, -2.466, -2.701]], margin: 0.215 },
+        whole: FabricLaw { constant: -0.510, grid: 0.914, warp: 0.065, weft: 0.899, shear: 0.036, margin: 0.106 },
+        implicit: FabricLaw { constant: -0.511, grid: 0.923, warp: 0.072, weft: 0.894, shear: 0.034, margin: 0.116 },
+        plain_price: Price { constant: 0.92, grid: 6.81, step: 0.41 },
+        tethers_price: Price { constant: 1.59, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 43.32, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 145.71, grid: 2377.98, step: 0.00 },
     },
     // Loose
     Row {
-        plain: StepLaw { constant: -1.452, grid: 1.079, step: 0.463, margin: 0.284 },
-        inertia: StepLaw { constant: 0.000, grid: 0.000, step: 0.000, margin: 0.000 },
-        tethers: StepLaw { constant: 0.000, grid: 0.000, step: 0.000, margin: 0.000 },
-        fabric: FabricLaw { constant: 1.218, grid: 0.415, warp: 0.594, weft: -0.357, shear: 0.764, margin: 0.369 },
+        plain: Strains { substeps: &[4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0], ln_strain: [&[-2.341, -3.397, -3.448, -3.665, -4.272, -4.437, -5.362], &[-1.823, -2.498, -2.902, -3.129, -3.519, -3.633, -4.054], &[-0.961, -1.841, -2.339, -2.560, -2.888, -3.070, -3.671]], margin: 0.226 },
+        inertia: Strains { substeps: &[], ln_strain: [&[], &[], &[]], margin: 0.030 },
+        tethers: Strains { substeps: &[], ln_strain: [&[], &[], &[]], margin: 0.030 },
+        whole: FabricLaw { constant: 1.278, grid: -0.154, warp: 0.237, weft: 0.585, shear: 0.178, margin: 0.399 },
+        implicit: FabricLaw { constant: 4.069, grid: -0.428, warp: 0.436, weft: 0.033, shear: 0.531, margin: 1.437 },
         plain_price: Price { constant: 1.00, grid: 0.00, step: 0.00 },
         tethers_price: Price { constant: 0.00, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 140.13, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 121.00, grid: 3734.52, step: 0.00 },
+        levels_price: Price { constant: 38.72, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 160.01, grid: 2574.80, step: 0.00 },
     },
 ];

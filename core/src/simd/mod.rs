@@ -45,6 +45,10 @@ use crate::width::{Supported, Width};
 
 pub(crate) use three::{Three, load};
 
+/// The numbers of the lanes of the widest vector.
+pub(crate) const NUMBERS: [f32; 16] =
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+
 /// Some f32 that are worked on at once; each operation is that of the single number in each lane.
 pub(crate) trait Vector:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
@@ -78,7 +82,6 @@ pub(crate) trait Vector:
     fn max(self, other: Self) -> Self;
 
     /// The smaller, `other` where they do not compare or are equal: [`crate::math::min`].
-    #[cfg_attr(not(test), expect(dead_code, reason = "the pair of max"))]
     fn min(self, other: Self) -> Self;
 
     /// Whether in any lane the number is above that of `other`.
@@ -86,6 +89,36 @@ pub(crate) trait Vector:
 
     /// In each lane `then` where the number is above that of `other`, else `otherwise`, also where they do not compare.
     fn above(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// 1 in each lane where the number is above that of `other`, else 0.
+    #[inline(always)]
+    fn one_above(self, other: Self) -> Self {
+        self.above(other, self.all(1.0), self.all(0.0))
+    }
+
+    /// 0 in each lane where the number is above that of `other`, else 1.
+    #[inline(always)]
+    fn one_unless_above(self, other: Self) -> Self {
+        self.above(other, self.all(0.0), self.all(1.0))
+    }
+
+    /// Where this one is 1 `then`, where it is 0 `otherwise`.
+    #[inline(always)]
+    fn pick(self, then: Self, otherwise: Self) -> Self {
+        self.above(self.all(0.5), then, otherwise)
+    }
+
+    /// Whether any lane is 1, of lanes that are 1 or 0.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.any_above(self.all(0.5))
+    }
+
+    /// Without the sign.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.max(self.all(0.0) - self)
+    }
 
     /// The lanes one place on in a row of vectors: the last of `before`, then all but the last of this one.
     fn next1(self, before: Self) -> Self;

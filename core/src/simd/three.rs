@@ -2,6 +2,7 @@
 #![allow(unsafe_code)] // pointers of the caller
 
 use super::Vector;
+use crate::Vector3;
 
 /// Three coordinates. Plain functions instead of closures and `map`: only what is always inlined is compiled with the
 /// instructions of the width.
@@ -29,6 +30,19 @@ impl<V: Vector> Three<V> {
             y.store(to[1].wrapping_add(at));
             z.store(to[2].wrapping_add(at));
         }
+    }
+
+    /// The same point in each lane; of `zero` only the existence is used.
+    #[inline(always)]
+    pub fn all(zero: V, a: Vector3<f32>) -> Three<V> {
+        Three([zero.all(a.x), zero.all(a.y), zero.all(a.z)])
+    }
+
+    /// [`Vector::read`] of each.
+    #[inline(always)]
+    pub fn read(zero: V, from: [&[f32]; 3], at: usize) -> Three<V> {
+        let [x, y, z] = from;
+        Three([zero.read(x, at), zero.read(y, at), zero.read(z, at)])
     }
 
     /// [`Vector::write`] of each.
@@ -62,6 +76,56 @@ impl<V: Vector> Three<V> {
     pub fn squared(self) -> V {
         let [x, y, z] = self.0;
         x * x + y * y + z * z
+    }
+
+    #[inline(always)]
+    pub fn over(self, divisor: V) -> Three<V> {
+        let a = self.0;
+        Three([a[0] / divisor, a[1] / divisor, a[2] / divisor])
+    }
+
+    #[inline(always)]
+    pub fn dot(self, other: Three<V>) -> V {
+        let (a, b) = (self.0, other.0);
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    #[inline(always)]
+    pub fn cross(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    }
+
+    #[inline(always)]
+    pub fn length(self) -> V {
+        self.squared().sqrt()
+    }
+
+    /// [`Vector::abs`] of each.
+    #[inline(always)]
+    pub fn abs(self) -> Three<V> {
+        let [x, y, z] = self.0;
+        Three([x.abs(), y.abs(), z.abs()])
+    }
+
+    /// [`Vector::min`] of each.
+    #[inline(always)]
+    pub fn min(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[0].min(b[0]), a[1].min(b[1]), a[2].min(b[2])])
+    }
+
+    /// [`Vector::max`] of each.
+    #[inline(always)]
+    pub fn max(self, other: Three<V>) -> Three<V> {
+        let (a, b) = (self.0, other.0);
+        Three([a[0].max(b[0]), a[1].max(b[1]), a[2].max(b[2])])
+    }
+
+    /// [`Vector::pick`] of each.
+    #[inline(always)]
+    pub fn pick(mask: V, then: Three<V>, otherwise: Three<V>) -> Three<V> {
+        Three::choose(mask, mask.all(0.5), then, otherwise)
     }
 
     /// [`Vector::next1`] of each.

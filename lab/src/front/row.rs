@@ -87,7 +87,7 @@ pub(super) fn finite(x: f64) -> Option<f64> {
 /// All rows as CSV, with the keys of the JSON rows as its first line. What is missing is empty.
 ///
 /// Error: the text of serde_json, which no row gives.
-pub fn csv(rows: &[Row]) -> Result<String, String> {
+pub fn csv(rows: &[impl Serialize]) -> Result<String, String> {
     let mut text = String::new();
     for (i, row) in rows.iter().enumerate() {
         let value = serde_json::to_value(row).map_err(|e| e.to_string())?;

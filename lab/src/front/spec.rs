@@ -225,9 +225,9 @@ fn quick(scene: Scene, fabric: &'static str, first: bool, rows: &mut Vec<Spec>) 
         rows.extend([8, 16, 32].map(|substeps| Spec { substeps, ..base }));
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::StrainLimit(0.05), ..base }));
-        rows.push(Spec { substeps: 8, limits: Limits::Levels(0.05), ..base });
+        rows.push(Spec { substeps: 8, limits: Limits::levels(0.05), ..base });
     }
-    rows.push(Spec { substeps: 2, limits: Limits::Levels(0.05), ..new(SIDE, Correction::UniformInertia) });
+    rows.push(Spec { substeps: 2, limits: Limits::levels(0.05), ..new(SIDE, Correction::UniformInertia) });
     implicit(new(SIDE, Correction::Analytic), &[(Solver::Bdf2, 1, 10), (Solver::ImplicitEuler, 1, 10)], rows);
     if first {
         for correction in [Correction::UniformInertia, Correction::AnalyticInertia] {
@@ -260,7 +260,7 @@ fn full(scene: Scene, fabric: &'static str, side: u32, rows: &mut Vec<Spec>) {
         for limits in [Limits::Tethers(0.0), Limits::StrainLimit(0.05)] {
             rows.extend([4, 8, 16, 32].map(|substeps| Spec { substeps, limits, ..base }));
         }
-        for limits in [Limits::Levels(0.02), Limits::Levels(0.05), Limits::Levels(0.1)] {
+        for limits in [Limits::levels(0.02), Limits::levels(0.05), Limits::levels(0.1)] {
             rows.extend([1, 2, 4, 8, 16].map(|substeps| Spec { substeps, limits, ..base }));
         }
     }

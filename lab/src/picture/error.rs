@@ -44,7 +44,7 @@ pub enum PictureError {
         /// Particles of the grid.
         particles: usize,
     },
-    /// The PNG could not be encoded.
+    /// The PNG or GIF could not be encoded.
     Encode {
         /// What the encoder said.
         reason: String,

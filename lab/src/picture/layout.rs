@@ -55,13 +55,13 @@ impl Layout {
         };
         let rows = count.div_ceil(columns);
         // Few panels are drawn larger.
-        let card_width = match columns {
+        let card_width = sheet.card_width.unwrap_or(match columns {
             1 => 760,
             2 => 560,
             3 => 420,
             4 => 356,
             _ => 332,
-        };
+        });
         let size = frame.size();
         let aspect = (size[1] / size[0].max(1e-6)).clamp(WINDOW_ASPECT.0, WINDOW_ASPECT.1);
         let window_height = ((card_width - 2) as f32 * aspect) as i32;

@@ -1,6 +1,7 @@
 //! Pictures: a small deterministic software renderer for cloth, and the sheets that compare settings side by side.
 //!
-//! [`Sheet`] is the way in: panels of one shared scale, shaded fabric, over-stretched edges in colour, a legend.
+//! [`Sheet`] is the way in: panels of one shared scale, shaded fabric, over-stretched edges in colour, a legend; [`encode_gif`]
+//! makes a film of sheets.
 
 mod camera;
 mod canvas;
@@ -9,6 +10,7 @@ mod cloth;
 mod color;
 mod contour;
 mod error;
+mod film;
 mod framing;
 mod grid;
 mod layout;
@@ -24,6 +26,7 @@ mod vector;
 pub use cloth::Style;
 pub use color::{Ramp, STRAIN_CEILING, STRAIN_FLOOR, Srgb};
 pub use error::PictureError;
+pub use film::encode_gif;
 pub use grid::Grid;
 pub(crate) use raster::{Raster, Vertex};
 pub use save::{encode_png, save_png};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::RgbImage;
 
-use super::camera::{Camera, View};
+use super::camera::{Camera, Frame, View};
 use super::canvas::{Area, Canvas};
 use super::card;
 use super::cloth::{self, Style};
@@ -38,12 +38,20 @@ pub struct Panel {
     pub(super) heading: String,
     pub(super) lines: Vec<String>,
     pub(super) grid: Grid,
+    style: Option<Style>,
 }
 
 impl Panel {
     /// A panel with a heading such as `generated`; the grid may hold positions that are not finite.
     pub fn new(heading: impl Into<String>, grid: Grid) -> Self {
-        Self { heading: heading.into(), lines: Vec::new(), grid }
+        Self { heading: heading.into(), lines: Vec::new(), grid, style: None }
+    }
+
+    /// Sets the colours of this cloth, where they are not those of the sheet. The legend shows the sheet's ramp.
+    #[must_use]
+    pub fn style(mut self, style: Style) -> Self {
+        self.style = Some(style);
+        self
     }
 
     /// Adds a line below the heading, such as `max 5.5 %  p99 1.2 %`; cut where the panel ends.
@@ -68,6 +76,7 @@ pub struct Sheet {
     outline_of: Option<usize>,
     style: Style,
     pitch: f32,
+    pub(super) card_width: Option<i32>,
 }
 
 impl Sheet {
@@ -81,7 +90,15 @@ impl Sheet {
             outline_of: None,
             style: Style::default(),
             pitch: PITCH,
+            card_width: None,
         }
+    }
+
+    /// Sets the width of a panel in pixels, 120 to 2000; by the number of panels where nothing is said.
+    #[must_use]
+    pub fn card_width(mut self, pixels: u32) -> Self {
+        self.card_width = Some(pixels.clamp(120, 2000) as i32);
+        self
     }
 
     /// Sets how far above the horizon the viewer stands, in degrees below 90; 10 where nothing is said.
@@ -131,15 +148,38 @@ impl Sheet {
     /// # Errors
     /// [`PictureError::Empty`] without panels, [`PictureError::TooManyPanels`] with more than [`MAX_PANELS`].
     pub fn render(&self) -> Result<RgbImage, PictureError> {
+        Ok(self.render_in(&self.frame()?))
+    }
+
+    /// Draws sheets of one layout at successive times, all seen by one camera: the pictures of a film.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn render_film(sheets: &[Sheet]) -> Result<Vec<RgbImage>, PictureError> {
+        let frames = sheets.iter().map(Sheet::frame).collect::<Result<Vec<Frame>, _>>()?;
+        let shared = frames.into_iter().reduce(|a, b| a.union(&b)).ok_or(PictureError::Empty)?;
+        Ok(sheets.iter().map(|sheet| sheet.render_in(&shared)).collect())
+    }
+
+    fn view(&self) -> View {
+        View::new(YAW, self.pitch)
+    }
+
+    /// What the camera must show.
+    fn frame(&self) -> Result<Frame, PictureError> {
         if self.panels.is_empty() {
             return Err(PictureError::Empty);
         }
         if self.panels.len() > MAX_PANELS {
             return Err(PictureError::TooManyPanels { panels: self.panels.len() });
         }
-        let view = View::new(YAW, self.pitch);
+        let view = self.view();
+        Ok(shared_frame(&self.panels, &contents(&self.panels, &view), &view))
+    }
+
+    fn render_in(&self, frame: &Frame) -> RgbImage {
+        let view = self.view();
         let contents: Vec<Content> = contents(&self.panels, &view);
-        let frame = shared_frame(&self.panels, &contents, &view);
         let drawn = contents.iter().any(|content| matches!(content, Content::Cloth));
 
         let mut keys = Keys { outline_of: None, pins: false, pixels_per_metre: drawn.then_some(1.0) };
@@ -147,9 +187,9 @@ impl Sheet {
         keys.outline_of = outlined.filter(|_| self.panels.len() > 1).map(|i| self.panels[i].heading.clone());
         keys.pins = self.panels.iter().any(|panel| !panel.grid.pins().is_empty());
 
-        let layout = Layout::new(self, &frame, &keys);
+        let layout = Layout::new(self, frame, &keys);
         let window = layout.window(0);
-        let camera = Camera::fit(view, &frame, window.width as usize, window.height as usize, CLOTH_MARGIN);
+        let camera = Camera::fit(view, frame, window.width as usize, window.height as usize, CLOTH_MARGIN);
         keys.pixels_per_metre = drawn.then(|| camera.pixels_per_metre());
 
         let outlines = outlined
@@ -178,7 +218,7 @@ impl Sheet {
             let area = Area { x: MARGIN, y, width: layout.width - 2 * MARGIN, height: Face::Small.height() };
             write(&mut canvas, area, line, Face::Small, Align::Left, SOFT_INK);
         }
-        Ok(canvas.into_image())
+        canvas.into_image()
     }
 
     /// Draws the sheet and writes it as PNG, whole or not at all.
@@ -195,7 +235,7 @@ impl Sheet {
         if let Some(solid) = solid {
             solid::draw(&mut raster, camera, &solid);
         }
-        cloth::draw(&mut raster, camera, &panel.grid, &self.style);
+        cloth::draw(&mut raster, camera, &panel.grid, panel.style.as_ref().unwrap_or(&self.style));
         raster
     }
 

@@ -47,7 +47,7 @@ pub fn exit(code: i32) -> ! {
     unsafe { asm!("syscall", in("rax") EXIT, in("rdi") code, options(noreturn, nostack)) }
 }
 
-/// The compiler writes calls to these two itself and a libc would have them. String instructions, since the compiler
+/// The compiler writes calls to these three itself and a libc would have them. String instructions, since the compiler
 /// would turn a loop into a call to the function that holds it.
 ///
 /// # Safety
@@ -58,6 +58,22 @@ unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, bytes: usize) -> *mut 
     unsafe {
         asm!("rep movsb", inout("rcx") bytes => _, inout("rdi") to => _, inout("rsi") from => _,
             options(nostack, preserves_flags));
+    }
+    to
+}
+
+/// # Safety
+/// `to` and `from` are valid for `bytes` bytes; they may overlap.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn memmove(to: *mut u8, from: *const u8, bytes: usize) -> *mut u8 {
+    if (to as usize).wrapping_sub(from as usize) >= bytes {
+        // SAFETY: forwards no byte is read after it was written.
+        return unsafe { memcpy(to, from, bytes) };
+    }
+    // SAFETY: as above; backwards, from the last byte on, which is there since `bytes` is not 0, and the flag is cleared again.
+    unsafe {
+        asm!("std", "rep movsb", "cld", inout("rcx") bytes => _, inout("rdi") to.add(bytes - 1) => _,
+            inout("rsi") from.add(bytes - 1) => _, options(nostack));
     }
     to
 }

@@ -39,6 +39,8 @@ taut::ClothStorage<side, side, 3, TAUT_FAMILY_ALL, TAUT_FEATURE_PULL> other_memo
 constexpr uint32_t whole_features = TAUT_FEATURE_AIR | TAUT_FEATURE_MASS | TAUT_FEATURE_MASK | TAUT_FEATURE_COLLIDERS |
                                     TAUT_FEATURE_TARGETS;
 taut::ClothStorage<side, side, 3, TAUT_FAMILY_ALL, whole_features> whole_memory;
+constexpr size_t band_bytes = 8192;
+taut::Storage<band_bytes, TAUT_CLOTH_ALIGN> band_block;
 unsigned char file_bytes[64 * 1024];
 unsigned char snapshot[64 * 1024];
 Vertex vertices[particles];
@@ -57,6 +59,14 @@ int empty_handles()
     EMPTY(grid.counts(counts));
     EMPTY(grid.digest(u64));
     EMPTY(grid.triangle_count(u32));
+    taut_memory bytes;
+    taut::Bands bands;
+    EMPTY(cloth.bands_memory(8, bytes));
+    EMPTY(cloth.bands_begin(8, band_block, bands));
+    EMPTY(bands.count(u32, u32));
+    EMPTY(bands.run(0, 0));
+    EMPTY(bands.end());
+    REQUIRE(!bands);
     EMPTY(cloth.reset());
     EMPTY(cloth.step());
     EMPTY(cloth.create(grid, taut::cloth_def_default(grid), cloth_memory));
@@ -272,6 +282,26 @@ int run(const void *file, size_t size)
     uint64_t index;
     DONE(cloth.step_index(index));
     REQUIRE(again == hash && index == 10);
+
+    // one frame in bands, as a job system would step them
+    taut_memory band_memory;
+    DONE(cloth.bands_memory(8, band_memory));
+    REQUIRE(band_memory.size <= band_bytes && band_memory.align <= TAUT_CLOTH_ALIGN);
+    taut::Bands bands;
+    DONE(cloth.bands_begin(8, band_block, bands));
+    uint32_t band_count, phases;
+    DONE(bands.count(band_count, phases));
+    REQUIRE(bands && band_count >= 1 && phases > 0);
+    for (uint32_t phase = 0; phase < phases; ++phase) {
+        for (uint32_t band = 0; band < band_count; ++band) {
+            DONE(bands.run(phase, band));
+        }
+    }
+    taut::Bands moved_bands(static_cast<taut::Bands &&>(bands));
+    DONE(moved_bands.end(&flags));
+    REQUIRE(!bands && !moved_bands && flags == 0);
+    DONE(cloth.step_index(index));
+    REQUIRE(index == 11);
 
     // reading through a const reference, into an interleaved buffer
     const taut::Cloth &read = cloth;

@@ -67,3 +67,10 @@ fn the_cape_stays_on_the_shoulders() {
     let touches: u32 = lines[2].split(' ').next().unwrap().parse().unwrap();
     assert!(touches > 200, "{}", lines[2]);
 }
+
+#[test]
+fn one_cloth_on_two_threads_has_the_bits_of_one() {
+    let lines = lines("bands.c");
+    assert_eq!(lines.len(), 1);
+    assert!(lines[0].starts_with("128 x 128, 8 bands, 2 threads, the bits of one thread, "), "{}", lines[0]);
+}

@@ -82,5 +82,37 @@ static int meshes(void)
     DONE(taut_cloth_step_all(list, 1, NULL));
     DONE(taut_cloth_step_index(list[1], &index));
     REQUIRE(index == 3 && flags[0] == 0 && flags[1] == 0);
+
+    // a frame in bands
+    static _Alignas(TAUT_CLOTH_ALIGN) unsigned char band_block[64 * 1024];
+    taut_memory memory;
+    taut_bands *bands;
+    uint32_t number, phases;
+    uint64_t hash_before, hash_after;
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_cloth_bands_memory(list[1], 7, &memory));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_bands_memory(list[1], 8, NULL));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_bands_memory(NULL, 8, &memory));
+    DONE(taut_cloth_bands_memory(list[1], 8, &memory));
+    REQUIRE(memory.align == TAUT_CLOTH_ALIGN && memory.size <= sizeof band_block);
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_bands_begin(list[1], 8, NULL, memory.size, &bands));
+    REFUSED(TAUT_ERROR_MISALIGNED, taut_cloth_bands_begin(list[1], 8, off(band_block), memory.size, &bands));
+    REFUSED(TAUT_ERROR_BLOCK_TOO_SMALL, taut_cloth_bands_begin(list[1], 8, band_block, memory.size - 1, &bands));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_cloth_bands_begin(list[1], 8, band_block, memory.size, NULL));
+    REFUSED(TAUT_ERROR_BAD_HANDLE, taut_bands_run((taut_bands *)(void *)band_block, 0, 0));
+    DONE(taut_cloth_state_hash(list[1], &hash_before));
+    DONE(taut_cloth_bands_begin(list[1], 8, band_block, memory.size, &bands));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_bands_count(bands, NULL, &phases));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_bands_count(bands, &number, NULL));
+    DONE(taut_bands_count(bands, &number, &phases));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_bands_run(bands, 0, number));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_bands_run(bands, 1, 0));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_bands_run(bands, phases, 0));
+    DONE(taut_bands_run(bands, 0, 0));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_bands_run(bands, 0, 0));
+    REFUSED(TAUT_ERROR_MISALIGNED, taut_bands_end(bands, off(flags)));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_bands_end(bands, flags)); // phases to go: taken back
+    REFUSED(TAUT_ERROR_BAD_HANDLE, taut_bands_end(bands, flags));
+    DONE(taut_cloth_state_hash(list[1], &hash_after));
+    REQUIRE(hash_before == hash_after);
     return 0;
 }

@@ -184,22 +184,10 @@ impl Dataset {
 
     /// The fabric's own numbers, the second part of [`Dataset::target`].
     pub fn numbers(&self, fabric: &Fabric) -> [f64; FABRIC] {
-        let limits = stretch_limits(fabric);
+        let limits = fabric.stretch_limits();
         let numbers = [fabric.density_kg_m2, fabric.hinge_rigidity_n_m, limits[0], limits[1], limits[2]];
         std::array::from_fn(|i| self.codings.1[i].encode(f64::from(numbers[i])))
     }
-}
-
-/// Stretch that a fabric shows in use, per direction: twice the strain at the top of a sheet of 1 m under its own weight,
-/// rho g H / C, with C11, C22 and, along the diagonal, the stiffness of the lattice at 45 degrees, at least 0.1 %.
-pub fn stretch_limits(fabric: &Fabric) -> [f32; 3] {
-    let [warp, weft, shear, bend] = fabric.stiffness;
-    let weight = fabric.density_kg_m2 * 9.81;
-    // the lattice turned by 45 degrees, warp and weft averaged: C11' = a/2 + 3 s/2, C12' = a/2 - s/2
-    let a = 0.5 * (warp + weft) + 4.0 * bend;
-    let (along, across) = (0.5 * a + 1.5 * shear, 0.5 * (a - shear));
-    let diagonal = along - across * across / along;
-    [warp + shear + 4.0 * bend, weft + shear + 4.0 * bend, diagonal].map(|c| (2.0 * weight / c).clamp(0.001, 0.29))
 }
 
 /// A smooth pattern of deviation about 1 over the field from the first numbers of the noise.

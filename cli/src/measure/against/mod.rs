@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use serde::Serialize;
 use taut::{Budget, ClothDef};
 use taut_lab::against::{Comparison, Mesh, Reference, Stage};
-use taut_lab::compare::{self, Case, Outcome, Setting};
+use taut_lab::compare::{self, Case, Model, Outcome, Setting};
+use taut_lab::fabric::rigidity_at;
 use taut_onnx::{Generator, Request};
 
 use crate::failure::{self, Failure};
@@ -167,7 +168,7 @@ fn simulate(args: &Args, generator: &Generator, job: &Job) -> Result<Ran, Failur
         budget: Budget::Tuned,
         density_kg_m2: job.density_kg_m2,
         seconds: job.seconds,
-        hinge_rigidity_n_m: correction.hinge_rigidity_n_m,
+        hinge_rigidity_n_m: rigidity_at(correction.hinge_rigidity_n_m, correction.density_kg_m2, job.density_kg_m2),
         seed: args.seed,
     };
     let step = ClothDef { rate_hz: args.rate, substeps: args.substeps, ..ClothDef::default() };
@@ -175,25 +176,24 @@ fn simulate(args: &Args, generator: &Generator, job: &Job) -> Result<Ran, Failur
     let field: Vec<f32> = correction.field.iter().copied().collect();
     let limits = correction.stretch_limits;
     let one = [args.slack; 3];
-    let limited = |of: Setting, by: [f32; 3]| Setting::Limited(Box::new(of), by);
-    let settings = [
-        Setting::Random,
-        Setting::Uniform,
-        Setting::Analytic(fabric.clone()),
-        Setting::UniformInertia,
-        Setting::AnalyticInertia(fabric.clone()),
-        Setting::RatiosInertia,
-        Setting::Generated(field.clone()),
-        limited(Setting::UniformInertia, one),
-        limited(Setting::AnalyticInertia(fabric), one),
-        limited(Setting::RatiosInertia, one),
-        limited(Setting::Generated(field), limits),
+    let models = [
+        Model::from(Setting::Random),
+        Setting::Uniform.into(),
+        Setting::Analytic(fabric.clone()).into(),
+        Setting::UniformInertia.into(),
+        Setting::AnalyticInertia(fabric.clone()).into(),
+        Setting::RatiosInertia.into(),
+        Setting::Generated(field.clone()).into(),
+        Model::limited(Setting::UniformInertia, one),
+        Model::limited(Setting::AnalyticInertia(fabric), one),
+        Model::limited(Setting::RatiosInertia, one),
+        Model::limited(Setting::Generated(field), limits),
     ];
-    let progress = Progress::new(settings.len());
-    let mut outcomes = Vec::with_capacity(settings.len());
-    for (i, setting) in settings.iter().enumerate() {
-        let name = setting.name();
-        let outcome = compare::run(&case, setting, |share| progress.at(i, name, share))
+    let progress = Progress::new(models.len());
+    let mut outcomes = Vec::with_capacity(models.len());
+    for (i, model) in models.iter().enumerate() {
+        let name = model.name();
+        let outcome = compare::run_model(&case, model, |_, frame| progress.at(i, name, frame.done()))
             .map_err(|e| Failure::new(format_args!("the setting {name} cannot run: {e}")))?;
         outcomes.push(outcome);
     }
