@@ -167,11 +167,8 @@ fn cantilever(load: f64, along_u: bool) -> f64 {
     let w = (m - 1) as f64 * cell;
     // the first hinge bends half a cell on either side of it: there the clamp is
     let long = l + 0.5 * cell;
-    let (sheet, at): (Sheet, fn([f64; 2]) -> [f64; 2]) = if along_u {
-        (Sheet::rectangle(m, n + 1, long, w).unwrap(), |p| p)
-    } else {
-        (Sheet::rectangle(n + 1, m, w, long).unwrap(), |[u, v]| [v, u])
-    };
+    let at = |[u, v]: [f64; 2]| if along_u { [u, v] } else { [v, u] };
+    let sheet = if along_u { Sheet::rectangle(m, n + 1, long, w) } else { Sheet::rectangle(n + 1, m, w, long) }.unwrap();
     let rigidity = 2e-5;
     let g = load * rigidity / (0.2 * l.powi(3));
     let around = Surroundings { gravity_m_s2: [0.0, -g, 0.0], ..NOTHING };
