@@ -18,6 +18,8 @@ impl Rapier {
         world.integration_parameters.dt = (1.0 / RATE_HZ) as Real;
         world.integration_parameters.num_solver_iterations = substeps as usize;
         world.integration_parameters.num_internal_pgs_iterations = iterations as usize;
+        // it would take up to four more substeps where particles are fast
+        world.integration_parameters.soft_bodies.max_extra_substeps = 0;
         let spacing = (SIDE_M / (side - 1) as f64) as Real;
         // a frequency far above the rate of the substeps saturates
         let stiffest = SpringCoefficients::new(1.0e6, 1.0);

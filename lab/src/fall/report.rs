@@ -111,10 +111,13 @@ pub fn cost_chart(rows: &[Row], processor: &str) -> Option<Chart> {
     if rows.is_empty() {
         return None;
     }
+    let (low, high) =
+        rows.iter().fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r.cpu_ms_per_s), h.max(r.cpu_ms_per_s)));
     let mut chart = Chart::new(
         &format!("A falling sheet on {processor}"),
         Axis::log("particles along each side"),
-        Axis::log("ms of CPU per simulated second"),
+        // room for the legend above the lines
+        Axis { range: Some([low / 1.5, 20.0 * high]), ..Axis::log("ms of CPU per simulated second") },
     );
     for (criterion, name) in [(Criterion::Mean15, "mean 1.5 %"), (Criterion::Peak, "peak")] {
         for width in Width::ALL {
