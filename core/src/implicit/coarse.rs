@@ -9,7 +9,7 @@
 //! the mass by 4/9 of its plain sum, the springs by 2/3 / H^2. A node on a pinned particle is left out.
 
 use super::blocks::inverse;
-use crate::layout::{Layout, read, write};
+use crate::layout::{Layout, block, read, write};
 use crate::math::round16;
 use crate::simd::{self, Pass, Vector};
 use crate::width::Supported;
@@ -83,9 +83,10 @@ fn level(fine: Shape, memory: &mut [f32]) -> Option<(Level<'_>, &mut [f32])> {
     Some((Level { shape, mass, blocks, residual, result }, rest))
 }
 
+/// Coarse nodes that are worked on at a time.
+const BLOCK: usize = 16;
+
 /// to = sum over the fine nodes with the weights 1, 1/2, 1/4 of the hat around each coarse one.
-///
-/// Plain loops, here and below: the compiler makes vectors of the width of them.
 struct Gather<'p> {
     fine: Shape,
     from: &'p [f32],
@@ -97,25 +98,46 @@ impl Pass for Gather<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self, _: V) {
+    fn run<V: Vector>(self, zero: V) {
         let Gather { fine, from, coarse, to } = self;
         for row in 0..coarse.rows {
-            let n = 2 * coarse.columns + 2;
-            let middle = fine.row(2 * row) - 1;
-            let pairs = |at: usize| from.get(at..at + n).unwrap_or(&[]).as_chunks::<2>().0;
-            let (above, here, below) = (pairs(middle - fine.stride), pairs(middle), pairs(middle + fine.stride));
-            let (above2, here2, below2) =
-                (above.get(1..).unwrap_or(&[]), here.get(1..).unwrap_or(&[]), below.get(1..).unwrap_or(&[]));
-            let at = coarse.row(row);
+            let (here, at) = (fine.row(2 * row) - 1, coarse.row(row));
+            let (above, below) = (here - fine.stride, here + fine.stride);
             let to = to.get_mut(at..at + coarse.columns).unwrap_or(&mut []);
-            let left = above.iter().zip(here).zip(below);
-            let right = above2.iter().zip(here2).zip(below2);
-            for ((to, ((a, h), b)), ((a2, h2), b2)) in to.iter_mut().zip(left).zip(right) {
-                let t = |a: f32, h: f32, b: f32| h + 0.5 * (a + b);
-                *to = t(a[1], h[1], b[1]) + 0.5 * (t(a[0], h[0], b[0]) + t(a2[0], h2[0], b2[0]));
+            for (to, first) in to.chunks_mut(BLOCK / 2).zip((0..).step_by(BLOCK)) {
+                // the hats around all fine nodes of a block, of which every second one is taken
+                let mut hats = [0.0; BLOCK];
+                let cut = |at: usize| block::<{ BLOCK + 2 }>(from, at + first);
+                if let (Some(a), Some(h), Some(b)) = (cut(above), cut(here), cut(below)) {
+                    let mut lane = 0;
+                    while lane < BLOCK {
+                        let (left, right) = (across(zero, a, h, b, lane), across(zero, a, h, b, lane + 2));
+                        let hat = across(zero, a, h, b, lane + 1) + zero.all(0.5) * (left + right);
+                        hat.write(&mut hats, lane);
+                        lane += V::LANES;
+                    }
+                } else {
+                    // near the end of the planes of small levels
+                    for (i, hat) in hats.iter_mut().enumerate().take(2 * to.len()) {
+                        let t = |i: usize| {
+                            let (a, h, b) = (above + i, here + i, below + i);
+                            read(from, h) + 0.5 * (read(from, a) + read(from, b))
+                        };
+                        *hat = t(first + i + 1) + 0.5 * (t(first + i) + t(first + i + 2));
+                    }
+                }
+                for (to, hat) in to.iter_mut().zip(hats.iter().step_by(2)) {
+                    *to = *hat;
+                }
             }
         }
     }
+}
+
+/// The middle of three rows and half of the others.
+#[inline(always)]
+fn across<V: Vector>(zero: V, a: &[f32; BLOCK + 2], h: &[f32; BLOCK + 2], b: &[f32; BLOCK + 2], lane: usize) -> V {
+    zero.read(h, lane) + zero.all(0.5) * (zero.read(a, lane) + zero.read(b, lane))
 }
 
 /// to += the bilinear interpolation of the coarse nodes.
@@ -130,19 +152,39 @@ impl Pass for Spread<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self, _: V) {
+    fn run<V: Vector>(self, zero: V) {
         let Spread { coarse, from, fine, to } = self;
+        let half = zero.all(0.5);
         for row in 0..fine.rows {
-            let at = coarse.row(row / 2);
-            let below = coarse.row(row.div_ceil(2));
-            let n = coarse.columns;
-            let cut = |at: usize| from.get(at..at + n + 1).unwrap_or(&[]);
-            let (a, b) = (cut(at), cut(below));
-            let (a2, b2) = (a.get(1..).unwrap_or(&[]), b.get(1..).unwrap_or(&[]));
+            let (a, b) = (coarse.row(row / 2), coarse.row(row.div_ceil(2)));
             let at = fine.row(row);
-            let pairs = to.get_mut(at..at + 2 * n).unwrap_or(&mut []).as_chunks_mut::<2>().0;
-            for (((to, (a, b)), a2), b2) in pairs.iter_mut().zip(a.iter().zip(b)).zip(a2).zip(b2) {
-                let (t, t2) = (0.5 * (a + b), 0.5 * (a2 + b2));
+            let to = to.get_mut(at..at + 2 * coarse.columns).unwrap_or(&mut []);
+            let (blocks, rest) = to.as_chunks_mut::<{ 2 * BLOCK }>();
+            let mut first = 0;
+            for to in blocks {
+                // those on a coarse node, and those behind each
+                let (mut on, mut behind) = ([0.0; BLOCK], [0.0; BLOCK]);
+                let mut lane = 0;
+                while lane < BLOCK {
+                    let i = first + lane;
+                    let t = half * (zero.read(from, a + i) + zero.read(from, b + i));
+                    let t2 = half * (zero.read(from, a + i + 1) + zero.read(from, b + i + 1));
+                    t.write(&mut on, lane);
+                    (half * (t + t2)).write(&mut behind, lane);
+                    lane += V::LANES;
+                }
+                let (pairs, _) = to.as_chunks_mut::<2>();
+                for (to, (on, behind)) in pairs.iter_mut().zip(on.iter().zip(&behind)) {
+                    to[0] += on;
+                    to[1] += behind;
+                }
+                first += BLOCK;
+            }
+            for (to, i) in rest.as_chunks_mut::<2>().0.iter_mut().zip(first..) {
+                let (t, t2) = (
+                    0.5 * (read(from, a + i) + read(from, b + i)),
+                    0.5 * (read(from, a + i + 1) + read(from, b + i + 1)),
+                );
                 to[0] += t;
                 to[1] += 0.5 * (t + t2);
             }
@@ -150,7 +192,7 @@ impl Pass for Spread<'_> {
     }
 }
 
-/// to = blocks * from.
+/// to = blocks * from. Plain loops: the compiler makes vectors of the width of them.
 struct Multiply<'p, 'a> {
     blocks: &'p [&'a mut [f32]; 6],
     from: &'p [&'a mut [f32]; 3],

@@ -4,8 +4,7 @@
 //! for x, y and z one after the other, added to 16 lanes of f64 after the row, and those to one number by a tree.
 
 use super::coarse;
-use super::operator::{Linear, apply};
-use crate::around::LANES;
+use super::operator::{Linear, apply_row};
 use crate::force::{Planes, View};
 use crate::layout::{Layout, span};
 use crate::simd::{self, Pass, Three, Vector};
@@ -76,6 +75,8 @@ pub(super) struct Work<'p, 'a> {
     pub search: &'p mut Planes<'a>,
     pub image: &'p mut Planes<'a>,
     pub levels: &'p mut [f32],
+    /// Scratch, [`Layout::carry`].
+    pub carry: &'p mut [f32],
 }
 
 /// image = A search, after the search has taken the preconditioned residual, in `image`, on: that plus `share` times what it
@@ -88,6 +89,7 @@ pub(super) struct Image<'p, 'a, 'b> {
     pub share: Option<f32>,
     pub search: &'p mut Planes<'a>,
     pub image: &'p mut Planes<'a>,
+    pub carry: &'p mut [f32],
 }
 
 impl Pass for Image<'_, '_, '_> {
@@ -96,6 +98,7 @@ impl Pass for Image<'_, '_, '_> {
     #[inline(always)]
     fn run<V: Vector>(self, zero: V) -> f64 {
         let (l, mut sum) = (self.l, Sum::new());
+        self.carry.fill(0.0);
         // the directions are two rows ahead of the operator, which reads them
         for row in 0..l.rows + 2 {
             if row < l.rows
@@ -113,10 +116,8 @@ impl Pass for Image<'_, '_, '_> {
                 }
             }
             if row >= 2 {
-                for column in (0..l.width).step_by(LANES) {
-                    let at = l.at(row - 2, column);
-                    apply(zero, l.stride, at, self.x, self.linear, self.search.view(), self.image);
-                }
+                let search = self.search.view();
+                apply_row(zero, l, row - 2, self.x, self.linear, search, self.image, self.carry);
                 sum.add_row(l, row - 2, pairs(self.search.view(), self.image.view()));
             }
         }
@@ -214,6 +215,7 @@ impl System<'_, '_> {
                 share: Some(share),
                 search: work.search,
                 image: work.image,
+                carry: work.carry,
             };
             let way = ratio(energy, simd::run(self.width, image));
             let next = self.advance(Some(way), work);
@@ -224,7 +226,7 @@ impl System<'_, '_> {
 
     /// Goes a way along the search; then z, in `image`, is the preconditioned residual. Answers with the sum of r.z.
     fn advance(&self, way: Option<f32>, work: &mut Work<'_, '_>) -> f64 {
-        let Work { change, residual, search, image, levels } = work;
+        let Work { change, residual, search, image, levels, .. } = work;
         let (l, blocks) = (self.l, self.blocks);
         let advance = Advance { l, blocks, way, change, residual, search: search.view(), image };
         simd::run(self.width, advance);

@@ -132,7 +132,7 @@ impl Cloth<'_> {
         coarse::prepare(width, &l, linear.mass, blocks.each_ref().map(|p| &**p), coarse);
         simd::run(width, blocks::Invert { l: &l, mass: linear.mass, blocks });
         if !again {
-            simd::run(width, Image { l: &l, x, linear, share: None, search: change, image });
+            simd::run(width, Image { l: &l, x, linear, share: None, search: change, image, carry: self.carry });
             for (r, q) in residual.axes().into_iter().zip(image.axes()) {
                 for row in 0..l.rows {
                     for (r, q) in row_mut(&l, row, r).iter_mut().zip(row_of(&l, row, q)) {
@@ -143,7 +143,10 @@ impl Cloth<'_> {
         }
         let blocks = blocks.each_ref().map(|p| &**p);
         let system = System { width, l: &l, x, linear, blocks, floating: self.pins.count == 0 };
-        system.solve(self.def.cg_iterations, &mut Work { change, residual, search, image, levels: coarse });
+        system.solve(
+            self.def.cg_iterations,
+            &mut Work { change, residual, search, image, levels: coarse, carry: self.carry },
+        );
     }
 
     /// v += change, x += b change; the change is 0 after it.

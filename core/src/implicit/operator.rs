@@ -99,44 +99,79 @@ impl Pass for Linearise<'_, '_> {
     }
 }
 
-/// One block of image = A search, from a place on.
+/// One row of image = A search. Every spring is worked out once, where it starts: what its other end has of it is exactly
+/// the opposite, and is taken off in the order in which a gather would add it (compare [`crate::force`]).
+///
+/// `carry` hands the springs to the rows below: [`crate::layout::CARRY_ROWS`] rows of zeros before the first row.
 #[inline(always)]
-pub(super) fn apply<V: Vector>(
+#[allow(clippy::too_many_arguments)]
+pub(super) fn apply_row<V: Vector>(
     zero: V,
-    stride: usize,
-    at: usize,
+    l: &Layout,
+    row: usize,
     x: View<'_>,
     linear: &Linear<'_>,
     search: View<'_>,
     image: &mut Planes<'_>,
+    carry: &mut [f32],
 ) {
-    let (x, search) = (Around3::new(x, at, stride), Around3::new(search, at, stride));
-    let (alpha, gamma) = (Twelve::new(linear.alphas(), at, stride), Twelve::new(linear.gammas(), at, stride));
-    let (Some(x), Some(search), Some(alpha), Some(gamma)) = (x, search, alpha, gamma) else {
-        return;
-    };
-    let mut lane = 0;
-    while lane < LANES {
-        let at = at.wrapping_add(lane);
-        let (x0, p0) = (x.here(zero, lane), search.here(zero, lane));
+    let s = l.stride;
+    // 3 rows below, 3 lower left, 3 lower right of an even and of an odd row, 3 two below of each
+    let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
+    let place = |number: usize| number * s + 16;
+    let none = Three([zero; 3]);
+    let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
+    for column in (0..l.width).step_by(V::LANES) {
+        let at = l.at(row, column);
+        let (x0, p0) = (read3(zero, x, at), read3(zero, search, at));
         let mut sum = p0.times(zero.read(linear.mass, at));
-        macro_rules! spring {
-            ($($j:literal)*) => {$(
-                let (d, e) = (x0.minus(x.other(zero, $j, lane)), p0.minus(search.other(zero, $j, lane)));
-                let along = gamma.read(zero, $j, lane) * d.dot(e);
-                sum = sum.plus(e.times(alpha.read(zero, $j, lane)).plus(d.times(along)));
-            )*};
+        // the part of the spring of a family that starts at each particle
+        macro_rules! start {
+            ($family:literal, $to:expr) => {{
+                let to = at.wrapping_add($to);
+                let (d, e) = (x0.minus(read3(zero, x, to)), p0.minus(read3(zero, search, to)));
+                let along = zero.read(linear.gamma[$family], at) * d.dot(e);
+                e.times(zero.read(linear.alpha[$family], at)).plus(d.times(along))
+            }};
         }
-        spring!(1 2 3 4);
-        if alpha.shear.is_some() {
-            spring!(5 6 7 8);
+        // and what ends there, handed on from rows above
+        macro_rules! hand_on {
+            ($e:expr, $from:expr, $shift:expr, $to:expr) => {{
+                let (e, from, to) = ($e, place($from) + column, place($to) + column);
+                sum = sum.plus(e).minus(carried(zero, carry, from.wrapping_add_signed($shift), s));
+                for (axis, e) in e.0.into_iter().enumerate() {
+                    e.write(carry, to + axis * s);
+                }
+            }};
         }
-        if alpha.bend.is_some() {
-            spring!(9 10 11 12);
+        let e = start!(0, 1);
+        sum = sum.plus(e).minus(e.next1(before));
+        before = e;
+        hand_on!(start!(1, s), 0, 0, 0);
+        if l.shear {
+            hand_on!(start!(2, s + 1), 6 + other, -1, 6 + this);
+            hand_on!(start!(3, s - 1), 3, 1, 3);
+        }
+        if l.bend {
+            let e = start!(4, 2);
+            sum = sum.plus(e).minus(e.next2(bend_before, bend_before2));
+            bend_before2 = bend_before;
+            bend_before = e;
+            hand_on!(start!(5, 2 * s), 12 + this, 0, 12 + this);
         }
         sum.times(zero.read(linear.free, at)).write([&mut *image.x, &mut *image.y, &mut *image.z], at);
-        lane += V::LANES;
     }
+}
+
+#[inline(always)]
+fn read3<V: Vector>(zero: V, view: View<'_>, at: usize) -> Three<V> {
+    Three::read(zero, [view.x, view.y, view.z], at)
+}
+
+/// Three rows of the carry from a place on.
+#[inline(always)]
+fn carried<V: Vector>(zero: V, carry: &[f32], at: usize, stride: usize) -> Three<V> {
+    Three([zero.read(carry, at), zero.read(carry, at + stride), zero.read(carry, at + 2 * stride)])
 }
 
 /// The right side b F - M (1 + b c) (v - known), known = v_bar / (1 + b c), for the shape x; 0 where nothing is free. `outer`

@@ -168,7 +168,7 @@ fn image_of(c: &mut Cloth<'_>, search: &[f64]) -> Vec<f64> {
         write(to.y, at, search[3 * i + 1] as f32);
         write(to.z, at, search[3 * i + 2] as f32);
     }
-    simd::run(c.width, Image { l: &l, x, linear, share: None, search: to, image });
+    simd::run(c.width, Image { l: &l, x, linear, share: None, search: to, image, carry: c.carry });
     list(c, &c.implicit.image)
 }
 
@@ -233,7 +233,7 @@ fn solve(c: &mut Cloth<'_>, iterations: u32) {
     }
     let blocks = blocks.each_ref().map(|p| &**p);
     let system = System { width: c.width, l: &l, x, linear, blocks, floating: false };
-    system.solve(iterations, &mut Work { change, residual, search, image, levels: coarse });
+    system.solve(iterations, &mut Work { change, residual, search, image, levels: coarse, carry: c.carry });
 }
 
 /// The coarse levels are there for the sake of few iterations: on a stiff sheet of 33 x 40, loaded by its weight, 20 of
