@@ -19,7 +19,7 @@
 //! Stiffness, masses, pins and tethers are only read. No reference to a whole plane that is written exists meanwhile.
 #![allow(unsafe_code)] // pointers to planes that bands share: see the last paragraphs
 
-mod rows;
+pub(crate) mod rows;
 #[cfg(test)]
 mod tests;
 

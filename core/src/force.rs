@@ -14,8 +14,10 @@
 //! A particle's position is moved at once: the springs that start later in the pass end at particles that come later.
 #![allow(unsafe_code)] // pointers into planes whose lengths are checked once a sweep: see `Sweep::run`
 
+use crate::bands::rows::{Move, Rows};
 use crate::layout::{CARRY_ROWS, Layout, span};
-use crate::simd::{Pass, Three, Vector, load};
+use crate::simd::{self, Pass, Three, Vector, load};
+use crate::width::Supported;
 
 /// Below this squared length in m^2 a spring has no direction and gives no force.
 pub(crate) const TINY: f32 = 1e-30;
@@ -144,43 +146,33 @@ impl Sweep<'_, '_> {
         })
     }
 
-    /// The substep with the families as they are.
-    #[inline(always)]
-    fn families<V: Vector, const SHEAR: bool, const BEND: bool>(mut self, zero: V) {
+    /// The substep: all rows as one band without borders, so that there is one copy of the code.
+    ///
+    /// What [`Move`] asks for: [`Sweep::pointers`] has checked the lengths, and the planes are borrowed. Rows 0 to rows - 1
+    /// are begun and swept: the largest place that is read is that of the bend springs along v, as many numbers as whole
+    /// vectors hold (at most the padded width) from row(row + 2) on, or two numbers beyond them in the rows row and row + 1; the
+    /// least is row(1) - 1. The rows of carry are read one number before and beyond, which is in their spare 16.
+    pub fn run(mut self, width: Supported) {
         self.carry.fill(0.0);
-        let Some(p) = self.pointers() else {
+        let Some(pointers) = self.pointers() else {
             return;
         };
         let l = self.layout;
-        let k = Constants::new(zero, self.constants);
-        // whole vectors: at most the padded width
-        let n = l.columns.div_ceil(V::LANES) * V::LANES;
-        // SAFETY: `pointers` has checked the lengths. Rows 0 to rows - 1 are begun and swept: the largest place that is
-        // read is that of the bend springs along v, n numbers from row(row + 2) on, or two numbers beyond n in the rows
-        // row and row + 1; the least is row(1) - 1. The rows of carry are read one number before and beyond n, which is
-        // in their spare 16.
-        unsafe {
-            let mut s = Springs6::new::<SHEAR, BEND>(zero, &p, &k, 0, l.stride);
-            for row in 0..l.rows {
-                // after the last row the first vector of it is begun once more, for nobody
-                let next = if row + 1 < l.rows { row + 1 } else { row };
-                sweep_row::<V, SHEAR, BEND>(zero, &p, &k, &mut s, row, next, l.stride, n);
-            }
-        }
-    }
-}
-
-impl Pass for Sweep<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: Vector>(self, zero: V) {
-        match (self.layout.shear, self.layout.bend) {
-            (false, false) => self.families::<V, false, false>(zero),
-            (false, true) => self.families::<V, false, true>(zero),
-            (true, false) => self.families::<V, true, false>(zero),
-            (true, true) => self.families::<V, true, true>(zero),
-        }
+        simd::run(
+            width,
+            Move(Rows {
+                pointers,
+                constants: *self.constants,
+                shear: l.shear,
+                bend: l.bend,
+                columns: l.columns,
+                stride: l.stride,
+                first: 0,
+                end: l.rows,
+                above: core::ptr::null_mut(),
+                below: core::ptr::null_mut(),
+            }),
+        );
     }
 }
 
@@ -320,7 +312,7 @@ impl<V: Vector> Springs6<V> {
 /// Begins the springs of one direction, from particles `here` to those from the place `there` on.
 ///
 /// # Safety
-/// The places that [`Sweep::families`] names are inside the planes.
+/// The places that [`Sweep::run`] names are inside the planes.
 #[inline(always)]
 pub(crate) unsafe fn begin<V: Vector>(
     c: &Constants<V>,
@@ -337,7 +329,7 @@ pub(crate) unsafe fn begin<V: Vector>(
 /// then those of the row's at `next`.
 ///
 /// # Safety
-/// The places that [`Sweep::families`] names are inside the planes.
+/// The places that [`Sweep::run`] names are inside the planes.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
 pub(crate) unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(

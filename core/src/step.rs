@@ -147,7 +147,7 @@ impl Cloth<'_> {
             pull,
             carry: self.carry,
         };
-        simd::run(self.width, sweep);
+        sweep.run(self.width);
     }
 
     pub(crate) fn keep_good(&mut self) {

@@ -101,12 +101,13 @@ impl Pass for Cross {
 
 /// Moves the particles of the band.
 ///
-/// Safety: only [`crate::bands`] makes one, where nobody else uses positions, velocities and carry of this band, and nobody
-/// writes the borders.
+/// Safety: [`crate::bands`] makes one, where nobody else uses positions, velocities and carry of this band, and nobody
+/// writes the borders; and [`crate::force::Sweep::run`], of all rows, which it has borrowed.
 pub(crate) struct Move(pub Rows);
 
 impl Pass for Move {
     type Output = ();
+    const SINGLE: bool = true;
 
     #[inline(always)]
     fn run<V: Vector>(self, zero: V) {

@@ -150,6 +150,11 @@ pub(crate) trait Vector:
 pub(crate) trait Pass {
     type Output;
 
+    /// Whether it is compiled for single numbers too where a processor always has vectors. The sweep is, as the reference
+    /// that a caller can choose; for all else that would be a quarter of the library's code for nothing, since the bits are
+    /// the same. Builds with debug assertions, and so the tests, have all of them.
+    const SINGLE: bool = cfg!(any(debug_assertions, not(any(target_arch = "x86_64", target_arch = "aarch64"))));
+
     /// Must be `#[inline(always)]`, and so must be what it calls with vectors.
     fn run<V: Vector>(self, zero: V) -> Self::Output;
 }
@@ -168,6 +173,12 @@ pub(crate) fn run<P: Pass>(width: Supported, pass: P) -> P::Output {
         Width::Avx512 => unsafe { x86::avx512(pass) },
         #[cfg(target_arch = "aarch64")]
         Width::Neon => neon::neon(pass),
+        _ if P::SINGLE => scalar::scalar(pass),
+        #[cfg(target_arch = "x86_64")]
+        _ => x86::sse2(pass),
+        #[cfg(target_arch = "aarch64")]
+        _ => neon::neon(pass),
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         _ => scalar::scalar(pass),
     }
 }
