@@ -13,10 +13,10 @@ pub(super) const ROWS: [Row; 5] = [
         tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-5.884, -7.220, -8.413, -9.884], &[-4.992, -6.058, -7.319, -8.408], &[-4.565, -4.565, -6.061, -7.407]], margin: 0.403 },
         whole: FabricLaw { constant: -0.495, grid: 0.134, warp: 0.989, weft: 0.032, shear: -0.021, margin: 0.062 },
         implicit: FabricLaw { constant: -0.434, grid: 0.115, warp: 0.989, weft: 0.038, shear: -0.027, margin: 0.066 },
-        plain_price: Price { constant: 0.57, grid: 6.23, step: 1.02 },
-        tethers_price: Price { constant: 3.57, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 17.95, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 121.97, grid: 2598.22, step: 0.00 },
+        plain_price: Price { constant: 0.49, grid: 7.88, step: 0.80 },
+        tethers_price: Price { constant: 1.71, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 13.25, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 67.50, grid: 1295.12, step: 0.00 },
     },
     // Hooks
     Row {
@@ -25,10 +25,10 @@ pub(super) const ROWS: [Row; 5] = [
         tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-1.735, -2.537, -3.510, -4.525], &[-0.557, -1.483, -1.982, -3.074], &[0.503, -0.102, -1.219, -1.777]], margin: 0.185 },
         whole: FabricLaw { constant: -0.089, grid: 0.641, warp: 0.548, weft: 0.345, shear: 0.107, margin: 0.461 },
         implicit: FabricLaw { constant: -2.779, grid: 1.317, warp: 0.468, weft: -0.040, shear: 0.573, margin: 0.568 },
-        plain_price: Price { constant: 0.73, grid: 2.64, step: 0.42 },
-        tethers_price: Price { constant: 3.21, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 42.75, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 143.67, grid: 2305.48, step: 0.00 },
+        plain_price: Price { constant: 0.60, grid: 3.30, step: 0.94 },
+        tethers_price: Price { constant: 2.51, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 39.45, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 78.17, grid: 1083.62, step: 0.00 },
     },
     // Corners
     Row {
@@ -37,10 +37,10 @@ pub(super) const ROWS: [Row; 5] = [
         tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-2.616, -3.802, -5.113, -6.477], &[-1.804, -2.780, -3.898, -5.124], &[-1.111, -2.067, -3.014, -4.052]], margin: 0.077 },
         whole: FabricLaw { constant: -1.193, grid: 0.994, warp: 0.341, weft: 0.581, shear: 0.078, margin: 0.130 },
         implicit: FabricLaw { constant: -1.189, grid: 0.994, warp: 0.344, weft: 0.579, shear: 0.077, margin: 0.127 },
-        plain_price: Price { constant: 0.55, grid: 4.24, step: 0.62 },
-        tethers_price: Price { constant: 1.43, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 28.59, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 113.16, grid: 2619.82, step: 0.00 },
+        plain_price: Price { constant: 0.62, grid: 1.69, step: 0.50 },
+        tethers_price: Price { constant: 1.39, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 25.75, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 72.77, grid: 1169.53, step: 0.00 },
     },
     // Corner
     Row {
@@ -49,10 +49,10 @@ pub(super) const ROWS: [Row; 5] = [
         tethers: Strains { substeps: &[2.0, 4.0, 8.0, 16.0], ln_strain: [&[-2.037, -2.298, -2.944, -3.743], &[-1.725, -2.167, -2.466, -2.787], &[-1.413, -1.982, -2.466, -2.701]], margin: 0.215 },
         whole: FabricLaw { constant: -0.510, grid: 0.914, warp: 0.065, weft: 0.899, shear: 0.036, margin: 0.106 },
         implicit: FabricLaw { constant: -0.511, grid: 0.923, warp: 0.072, weft: 0.894, shear: 0.034, margin: 0.116 },
-        plain_price: Price { constant: 0.92, grid: 6.81, step: 0.41 },
-        tethers_price: Price { constant: 1.59, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 43.32, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 145.71, grid: 2377.98, step: 0.00 },
+        plain_price: Price { constant: 0.85, grid: 4.60, step: 0.54 },
+        tethers_price: Price { constant: 1.45, grid: 0.00, step: 0.00 },
+        levels_price: Price { constant: 39.52, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 57.13, grid: 1332.05, step: 0.00 },
     },
     // Loose
     Row {
@@ -63,7 +63,7 @@ pub(super) const ROWS: [Row; 5] = [
         implicit: FabricLaw { constant: 4.069, grid: -0.428, warp: 0.436, weft: 0.033, shear: 0.531, margin: 1.437 },
         plain_price: Price { constant: 1.00, grid: 0.00, step: 0.00 },
         tethers_price: Price { constant: 0.00, grid: 0.00, step: 0.00 },
-        levels_price: Price { constant: 38.72, grid: 0.00, step: 0.00 },
-        implicit_price: Price { constant: 160.01, grid: 2574.80, step: 0.00 },
+        levels_price: Price { constant: 38.61, grid: 0.00, step: 0.00 },
+        implicit_price: Price { constant: 71.01, grid: 1939.04, step: 0.00 },
     },
 ];
