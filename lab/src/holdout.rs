@@ -132,7 +132,7 @@ mod tests {
     use taut::Solver;
 
     /// A grid and a fabric that no row of the table has. Costs are counted in plain steps, so that no clock decides: a tether
-    /// step as 1.5 with two pins and 3.5 with many, what is implicit as 100 and a step of levels as 25.
+    /// step as 1.5 with two pins and 2 with many, what is implicit as 100 and a step of levels as 25.
     #[test]
     fn picks_meet_the_tolerance_at_a_fair_cost() {
         let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };
@@ -143,7 +143,7 @@ mod tests {
                 Limits::None => 1.0,
                 Limits::Levels(_) => 25.0,
                 _ if spec.scene == Scene::Hang2 => 1.5,
-                Limits::Tethers(_) | Limits::StrainLimit(_) => 3.5,
+                Limits::Tethers(_) | Limits::StrainLimit(_) => 2.0,
             };
             step * f64::from(row.substeps)
         };
