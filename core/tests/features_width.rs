@@ -3,19 +3,11 @@
 
 mod common;
 
-use common::{Random, bits, cloth, grid, snapshot};
+use common::{Random, bits, cloth, grid, snapshot, vector_widths};
 use taut::{
     Air, Cloth, ClothDef, ColliderDef, ColliderId, Families, Features, Pose, Shape, Solver, StepFlags, Target,
     TargetLimit, Vector3, Width,
 };
-
-/// The widths that this machine has beside the single numbers; it says which ones it lacks.
-fn widths() -> Vec<Width> {
-    for lacking in Width::ALL.into_iter().filter(|w| !w.is_supported()) {
-        println!("SKIPPED: this machine has no {}", lacking.name());
-    }
-    Width::ALL.into_iter().filter(|w| w.is_supported() && *w != Width::Scalar).collect()
-}
 
 /// Columns on both sides of each vector length and of the blocks of 16; thin sheets; more rows than any band of them.
 const SIZES: [(u32, u32); 15] = [
@@ -228,7 +220,7 @@ const GOLDEN: [u64; 8] = [
 /// would have been compared.
 #[test]
 fn every_width_steps_features_to_the_same_bits() {
-    let widths = widths();
+    let widths = vector_widths();
     let (mut seed, mut compared, mut hashes, mut at_work) = (0, 0, Vec::new(), Vec::new());
     for kind in Kind::ALL {
         let (mut hash, mut worked) = (0xcbf2_9ce4_8422_2325, 0);

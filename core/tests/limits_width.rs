@@ -2,16 +2,8 @@
 
 mod common;
 
-use common::{Random, bits, cloth, grid, snapshot};
+use common::{Random, bits, cloth, grid, snapshot, vector_widths};
 use taut::{Cloth, ClothDef, Families, Features, StepFlags, Width};
-
-/// The widths that this machine has beside the single numbers; it says which ones it lacks.
-fn widths() -> Vec<Width> {
-    for lacking in Width::ALL.into_iter().filter(|w| !w.is_supported()) {
-        println!("SKIPPED: this machine has no {}", lacking.name());
-    }
-    Width::ALL.into_iter().filter(|w| w.is_supported() && *w != Width::Scalar).collect()
-}
 
 /// Columns on both sides of each vector length and of the blocks of 16; thin sheets; several levels.
 const SIZES: [(u32, u32); 16] = [
@@ -94,7 +86,7 @@ fn sheet(seed: u64, (rows, columns): (u32, u32), features: Features, pins: usize
 /// feature was at work, or nothing would have been compared.
 #[test]
 fn every_width_limits_to_the_same_bits() {
-    let widths = widths();
+    let widths = vector_widths();
     let both = Features(Features::TETHERS.0 | Features::STRAIN_LIMIT.0);
     let (mut seed, mut compared, mut at_work) = (0, 0, [0; 4]);
     for size in SIZES {

@@ -4,17 +4,9 @@
 mod common;
 
 use common::twin::Twin;
-use common::{Random, bits, cloth, grid, positions, snapshot, steps};
+use common::{Random, bits, cloth, grid, positions, snapshot, steps, widths};
 use taut::field::FieldView;
 use taut::{Cloth, ClothDef, Error, Families, Features, Width};
-
-/// The widths that this machine has; it says which ones it lacks.
-fn widths() -> Vec<Width> {
-    for lacking in Width::ALL.into_iter().filter(|w| !w.is_supported()) {
-        println!("SKIPPED: this machine has no {}", lacking.name());
-    }
-    Width::ALL.into_iter().filter(|w| w.is_supported()).collect()
-}
 
 /// A crumpled and swinging sheet with pins, and its twin. The field is too soft to be cut.
 fn twins(seed: u64, rows: u32, columns: u32, families: Families, pull: bool) -> (Cloth<'static>, Twin) {

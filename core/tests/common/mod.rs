@@ -5,7 +5,20 @@ pub mod contact;
 pub mod lattice;
 pub mod twin;
 
-use taut::{Cloth, ClothDef, Families, Grid, GridDef, Vector3, noise};
+use taut::{Cloth, ClothDef, Families, Grid, GridDef, Vector3, Width, noise};
+
+/// The widths that this machine has; it says which ones it lacks.
+pub fn widths() -> Vec<Width> {
+    for lacking in Width::ALL.into_iter().filter(|w| !w.is_supported()) {
+        println!("SKIPPED: this machine has no {}", lacking.name());
+    }
+    Width::ALL.into_iter().filter(|w| w.is_supported()).collect()
+}
+
+/// [`widths`] beside the single numbers.
+pub fn vector_widths() -> Vec<Width> {
+    widths().into_iter().filter(|w| *w != Width::Scalar).collect()
+}
 
 /// A grid of square or other cells.
 pub fn grid(rows: u32, columns: u32, width_m: f32, height_m: f32, families: Families) -> Grid {
