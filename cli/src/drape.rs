@@ -38,12 +38,7 @@ pub fn run(args: &args::Drape) -> Result<(), Failure> {
     for path in paths {
         text.push_str(&format!("Wrote {}\n", path.display()));
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 /// What all settings share. Everything that core would refuse later is refused here.

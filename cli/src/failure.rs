@@ -59,6 +59,15 @@ pub fn print_aside(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
+/// The answer of a command: its text, or with `--json` its JSON alone on stdout and the text on stderr.
+pub fn answer(as_json: bool, text: &str, json: &str) -> Result<(), Failure> {
+    if as_json {
+        print_aside(text);
+        return print(json);
+    }
+    print(text)
+}
+
 /// A bug must look like one, in one line, not like a page of the program's inside.
 pub fn quiet_panics() {
     std::panic::set_hook(Box::new(|panic| {

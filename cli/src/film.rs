@@ -109,12 +109,7 @@ pub fn run(args: &args::Film) -> Result<(), Failure> {
     for path in paths {
         text += &format!("Wrote {}\n", path.display());
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 fn title(name: &str) -> String {

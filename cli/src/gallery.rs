@@ -63,7 +63,7 @@ pub fn run(args: &args::Gallery) -> Result<(), Failure> {
         [] => SCENES.to_vec(),
         given => Scene::ALL.into_iter().filter(|s| given.contains(s)).collect(),
     };
-    let names: Vec<&'static str> = scenes.iter().map(|s| picture::name(*s)).chain(["gallery.json"]).collect();
+    let names: Vec<String> = scenes.iter().map(|s| format!("{s}.png")).chain(["gallery.json".into()]).collect();
     let generator = model::load(args.model.as_deref())?;
     // what is wrong with any fabric is said before the work
     let mut jobs = Vec::new();
@@ -112,12 +112,7 @@ pub fn run(args: &args::Gallery) -> Result<(), Failure> {
     for path in paths {
         text += &format!("Wrote {}\n", path.display());
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 /// What a fabric in a scene needs, or why it cannot be.

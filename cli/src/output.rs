@@ -100,22 +100,22 @@ fn check_name(path: &Path) -> Result<(), Failure> {
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    files: Vec<&'static str>,
+    files: Vec<String>,
 }
 
 impl Folder {
     /// Makes the folder if it is not there, and checks that the files of these names can be written into it. Call it
     /// before the work whose result it is for.
-    pub fn open(path: &Path, files: &[&'static str]) -> Result<Folder, Failure> {
+    pub fn open(path: &Path, files: &[impl AsRef<str>]) -> Result<Folder, Failure> {
         let mut made = unfilled();
         let missing = |p: &&Path| !p.as_os_str().is_empty() && !p.exists();
         let new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        let folder = Folder { path: path.into(), files: files.into() };
+        let folder = Folder { path: path.into(), files: files.iter().map(|f| f.as_ref().to_string()).collect() };
         let created = fs::create_dir_all(path);
         made.extend(new);
         drop(made);
         created.map_err(|e| cannot_write(path, &e))?;
-        for file in files {
+        for file in &folder.files {
             check_name(&path.join(file))?;
         }
         let probe = temporary(&path.join("probe"));

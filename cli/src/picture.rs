@@ -68,29 +68,3 @@ fn lines(s: &Setting, grid: [u32; 2]) -> [String; 4] {
         format!("{} substeps  {:.0} us/frame", s.substeps, notes::us_per_frame(s, grid)),
     ]
 }
-
-/// The name of a scene's picture, with the length of life that a folder wants.
-pub fn name(scene: Scene) -> &'static str {
-    match scene {
-        Scene::Hang2 => "hang2.png",
-        Scene::Edge => "edge.png",
-        Scene::Hang1 => "hang1.png",
-        Scene::Swing => "swing.png",
-        Scene::Curtain => "curtain.png",
-        Scene::Drape => "drape.png",
-        Scene::Flag => "flag.png",
-        Scene::Cusick => "cusick.png",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_named_after_their_scenes() {
-        for scene in Scene::ALL {
-            assert_eq!(name(scene), format!("{scene}.png"));
-        }
-    }
-}

@@ -255,12 +255,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for path in folder.fill(&[csv.as_bytes(), json.as_bytes(), &pngs[0], &pngs[1]])? {
         text.push_str(&format!("Wrote {}\n", path.display()));
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 fn text(report: &Report<'_>) -> String {

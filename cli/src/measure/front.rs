@@ -14,7 +14,7 @@ use crate::failure::{self, Failure};
 use crate::output::Folder;
 use crate::progress::Work;
 use crate::table::aligned;
-use crate::{model, notes, picture};
+use crate::{model, notes};
 
 /// Raised where a row of an older run would mean something else.
 const VERSION: u32 = 1;
@@ -70,8 +70,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let scenes: Vec<Scene> =
         Scene::ALL.into_iter().filter(|s| args.scenes.is_empty() || args.scenes.contains(s)).collect();
     let generator = model::load(args.model.as_deref())?;
-    let names: Vec<&'static str> =
-        ["front.csv", "front.json"].into_iter().chain(scenes.iter().map(|s| picture::name(*s))).collect();
+    let pictures = scenes.iter().map(|s| format!("{s}.png"));
+    let names: Vec<String> = ["front.csv".into(), "front.json".into()].into_iter().chain(pictures).collect();
     let folder = Folder::open(&args.out, &names)?;
     let digest = generator.info().training_digest.clone();
     let header = Header { measure: "front", version: VERSION, quick: args.quick, generator: &digest };
@@ -108,12 +108,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for path in paths {
         text += &format!("Wrote {}\n", path.display());
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 /// All rows of a list: those of the ledger, and the others measured.

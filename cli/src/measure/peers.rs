@@ -111,12 +111,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     for path in folder.fill(&[json.as_bytes()])? {
         text.push_str(&format!("Wrote {}\n", path.display()));
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 /// What the program was built with, a line each.

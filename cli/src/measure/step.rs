@@ -68,12 +68,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             text.push_str(&format!("Wrote {}\n", path.display()));
         }
     }
-    if args.json {
-        failure::print_aside(&text);
-        failure::print(&json)
-    } else {
-        failure::print(&text)
-    }
+    failure::answer(args.json, &text, &json)
 }
 
 fn text(report: &Report) -> String {
