@@ -17,7 +17,7 @@ pub struct Picture {
 /// A section of the page.
 pub struct Section {
     /// For links.
-    pub id: &'static str,
+    pub id: String,
     /// The heading.
     pub title: &'static str,
     /// How to read it.
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn the_page_holds_everything_and_nothing_gets_out_of_its_place() {
         let section = |text: &str| Section {
-            id: "drape",
+            id: "drape".into(),
             title: "One & all",
             about: "a < b",
             command: "taut drape \"<b>\"".into(),

@@ -59,94 +59,106 @@ pub enum Part {
     Atlas,
 }
 
-impl Part {
-    fn name(self) -> &'static str {
-        match self {
-            Part::Drape => "drape",
-            Part::Gallery => "gallery",
-            Part::Swing => "swing",
-            Part::Curtain => "curtain",
-            Part::Front => "front",
-            Part::Step => "step",
-            Part::Features => "features",
-            Part::Fall => "fall",
-            Part::Invariance => "invariance",
-            Part::Atlas => "atlas",
-        }
-    }
-
-    fn title(self) -> &'static str {
-        match self {
-            Part::Drape => "One sheet, seven corrections",
-            Part::Gallery => "Fabrics by their words",
-            Part::Swing => "In motion: a sheet swings down",
-            Part::Curtain => "In motion: a curtain whose hooks are driven",
-            Part::Front => "What a setting costs, and how wrong it is",
-            Part::Step => "What a step costs",
-            Part::Features => "What each feature costs",
-            Part::Fall => "What it costs that a falling sheet does not stretch",
-            Part::Invariance => "What must not matter, and does not",
-            Part::Atlas => "Where it breaks: the atlas of extremes",
-        }
-    }
-
+/// What a part is, beside its name.
+struct Told {
+    title: &'static str,
     /// How to read it.
-    fn about(self) -> &'static str {
-        match self {
-            Part::Drape => {
-                "The same sheet hangs from two corners until it rests. Bright edges are stretched by more than 2 %. The reference \
-                 has the fabric's own stiffness and as many substeps as that needs; all others have the substeps of a game."
+    about: &'static str,
+    /// The command, without its folder.
+    command: &'static [&'static str],
+    /// Whether the command has a quick set.
+    has_quick: bool,
+}
+
+/// Of both films.
+const FILM: &str = "The same motion four times: the fabric's own stiffness with as many substeps as it needs, the stiffest \
+     field that the step carries, the generated field, and the generated field with levels that allow no more \
+     than 5 %.";
+
+impl Part {
+    /// The name of its folder, and the link to it.
+    fn name(self) -> String {
+        // clap's name, which is what `--only` takes
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string())
+    }
+
+    fn told(self) -> Told {
+        let (title, about, command, has_quick): (_, _, &[&str], _) = match self {
+            Part::Drape => (
+                "One sheet, seven corrections",
+                "The same sheet hangs from two corners until it rests. Bright edges are stretched by more than \
+                 2 %. The reference has the fabric's own stiffness and as many substeps as that needs; all \
+                 others have the substeps of a game.",
+                &["drape", "heavy blue denim"],
+                false,
+            ),
+            Part::Gallery => (
+                "Fabrics by their words",
+                "Stiffness, density and bending rigidity come from the words alone, through the built-in \
+                 generator.",
+                &["gallery"],
+                false,
+            ),
+            Part::Swing => {
+                ("In motion: a sheet swings down", FILM, &["film", "heavy blue denim", "--scene", "swing"], false)
             }
-            Part::Gallery => {
-                "Stiffness, density and bending rigidity come from the words alone, through the built-in generator."
-            }
-            Part::Swing | Part::Curtain => {
-                "The same motion four times: the fabric's own stiffness with as many substeps as it needs, the stiffest field \
-                 that the step carries, the generated field, and the generated field with levels that allow no more than 5 %."
-            }
-            Part::Front => {
-                "Each point is one setting: CPU time beside the plain cloth at 60 Hz x 16 against the error of its strains. Lower \
-                 left is better; the steps join the settings that no other betters. The tables compare the corrections at \
-                 equal cost, also where the learned field loses."
-            }
-            Part::Step => {
-                "Thread CPU time per particle and substep, by vector width and size, beside the least that this core needs for the \
-                 square roots, divisions and sums."
-            }
-            Part::Features => "Bytes and time that a feature adds. What is off takes neither.",
-            Part::Fall => {
-                "The cheapest setting, by vector width, that keeps a falling sheet from stretching more than so much, and a hundred \
-                 capes on characters that walk."
-            }
-            Part::Invariance => {
-                "Frame rates, uneven frame times, the order of each solver when the step is halved, the mesh against the \
-                 continuum, single against double precision."
-            }
-            Part::Atlas => {
-                "Each cell is a run at an extreme. Green rests, yellow and orange stay bounded, grey is refused with a code; black \
-                 would be broken."
-            }
-        }
+            Part::Curtain => (
+                "In motion: a curtain whose hooks are driven",
+                FILM,
+                &["film", "light red silk", "--scene", "curtain", "--seconds", "3"],
+                false,
+            ),
+            Part::Front => (
+                "What a setting costs, and how wrong it is",
+                "Each point is one setting: CPU time beside the plain cloth at 60 Hz x 16 against the error of \
+                 its strains. Lower left is better; the steps join the settings that no other betters. The \
+                 tables compare the corrections at equal cost, also where the learned field loses.",
+                &["measure", "front"],
+                true,
+            ),
+            Part::Step => (
+                "What a step costs",
+                "Thread CPU time per particle and substep, by vector width and size, beside the least that this \
+                 core needs for the square roots, divisions and sums.",
+                &["measure", "step"],
+                false,
+            ),
+            Part::Features => (
+                "What each feature costs",
+                "Bytes and time that a feature adds. What is off takes neither.",
+                &["measure", "features"],
+                false,
+            ),
+            Part::Fall => (
+                "What it costs that a falling sheet does not stretch",
+                "The cheapest setting, by vector width, that keeps a falling sheet from stretching more than so \
+                 much, and a hundred capes on characters that walk.",
+                &["measure", "fall"],
+                true,
+            ),
+            Part::Invariance => (
+                "What must not matter, and does not",
+                "Frame rates, uneven frame times, the order of each solver when the step is halved, the mesh \
+                 against the continuum, single against double precision.",
+                &["measure", "invariance"],
+                false,
+            ),
+            Part::Atlas => (
+                "Where it breaks: the atlas of extremes",
+                "Each cell is a run at an extreme. Green rests, yellow and orange stay bounded, grey is refused \
+                 with a code; black would be broken.",
+                &["measure", "atlas"],
+                true,
+            ),
+        };
+        Told { title, about, command, has_quick }
     }
 
     /// The command, without its folder.
     fn command(self, full: bool) -> Vec<&'static str> {
-        let mut words = match self {
-            Part::Drape => vec!["drape", "heavy blue denim"],
-            Part::Gallery => vec!["gallery"],
-            Part::Swing => vec!["film", "heavy blue denim", "--scene", "swing"],
-            Part::Curtain => vec!["film", "light red silk", "--scene", "curtain", "--seconds", "3"],
-            Part::Front => vec!["measure", "front"],
-            Part::Step => vec!["measure", "step"],
-            Part::Features => vec!["measure", "features"],
-            Part::Fall => vec!["measure", "fall"],
-            Part::Invariance => vec!["measure", "invariance"],
-            Part::Atlas => vec!["measure", "atlas"],
-        };
-        if matches!(self, Part::Front | Part::Fall | Part::Atlas) && !full {
-            words.push("--quick");
-        }
-        words
+        let told = self.told();
+        let quick = (told.has_quick && !full).then_some("--quick");
+        told.command.iter().copied().chain(quick).collect()
     }
 }
 
@@ -167,7 +179,7 @@ struct Written {
 /// A part of [`Written`].
 #[derive(Serialize)]
 struct WrittenPart {
-    part: &'static str,
+    part: String,
     command: String,
     folder: String,
     pictures: usize,
@@ -180,7 +192,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let folder = Folder::open(&args.out, &["report.html"])?;
     let (mut sections, mut written) = (Vec::new(), Vec::new());
     for (i, part) in parts.iter().enumerate() {
-        let (home, command) = (args.out.join(part.name()), part.command(args.full));
+        let (name, told, command) = (part.name(), part.told(), part.command(args.full));
+        let home = args.out.join(&name);
         let line = typed(&command);
         let text = match summary(&home, &line) {
             Some(text) => text,
@@ -189,20 +202,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 measure(&home, &command, &line)?
             }
         };
-        let pictures = pictures(&home, part.title())?;
+        let pictures = pictures(&home, told.title)?;
         written.push(WrittenPart {
-            part: part.name(),
+            part: name.clone(),
             command: line.clone(),
             folder: home.display().to_string(),
             pictures: pictures.len(),
         });
         sections.push(Section {
-            id: part.name(),
-            title: part.title(),
-            about: part.about(),
+            id: name,
+            title: told.title,
+            about: told.about,
             command: line,
             pictures,
-            text: told(&text),
+            text: tables(&text),
         });
     }
     let html = page::html(&super::processor(), &sections);
@@ -236,7 +249,7 @@ fn measure(home: &Path, command: &[&str], line: &str) -> Result<String, Failure>
 }
 
 /// The table without what was written where.
-fn told(text: &str) -> String {
+fn tables(text: &str) -> String {
     let lines = text.lines().filter(|l| !l.starts_with("Wrote ") && !l.starts_with("wrote "));
     lines.collect::<Vec<_>>().join("\n").trim_end().to_string()
 }
@@ -281,6 +294,6 @@ mod tests {
     fn commands_are_shown_as_they_are_typed() {
         assert_eq!(typed(&Part::Drape.command(false)), "taut drape \"heavy blue denim\"");
         assert_eq!(typed(&Part::Atlas.command(true)), "taut measure atlas");
-        assert_eq!(told("a  b\n1  2\nWrote x\n"), "a  b\n1  2");
+        assert_eq!(tables("a  b\n1  2\nWrote x\n"), "a  b\n1  2");
     }
 }
