@@ -103,12 +103,43 @@ pub(crate) struct Pointers {
     pub carry: *mut f32,
 }
 
+/// Column 0 of what rows hand on to those below them: forces of the springs along v, to the lower left, to the lower right, and
+/// two rows on. What is handed on from a row and taken by the next one at another column, or by the row after the next,
+/// stands twice, for even and odd rows.
+pub(crate) struct Carried {
+    pub below: [*mut f32; 3],
+    pub lower_left: [*mut f32; 3],
+    /// Of this row, for the next one.
+    pub lower_right: [*mut f32; 3],
+    /// Of the row above, for this one.
+    pub upper_left: [*mut f32; 3],
+    /// Of the row two above, for this one, which leaves its own there.
+    pub two_below: [*mut f32; 3],
+    /// Of the row above, for the next one.
+    pub two_below_next: [*mut f32; 3],
+}
+
+/// Column 0 of three rows of carry, or of a border between bands, from one on.
+#[inline(always)]
+pub(crate) fn three_rows(from: *mut f32, row: usize, stride: usize) -> [*mut f32; 3] {
+    let first = from.wrapping_add(row.wrapping_mul(stride).wrapping_add(16));
+    [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
+}
+
 impl Pointers {
-    /// Column 0 of three rows of carry.
+    /// What a row takes and hands on.
     #[inline(always)]
-    pub fn carried(&self, row: usize, stride: usize) -> [*mut f32; 3] {
-        let first = self.carry.wrapping_add(row.wrapping_mul(stride).wrapping_add(16));
-        [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
+    pub fn carried(&self, row: usize, stride: usize) -> Carried {
+        let plane = |first: usize| three_rows(self.carry, first, stride);
+        let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
+        Carried {
+            below: plane(0),
+            lower_left: plane(3),
+            lower_right: plane(6 + this),
+            upper_left: plane(6 + other),
+            two_below: plane(12 + this),
+            two_below_next: plane(12 + other),
+        }
     }
 }
 
@@ -344,12 +375,7 @@ pub(crate) unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
 ) {
     let first = row.wrapping_mul(stride);
     let next_first = next_row.wrapping_mul(stride);
-    // rows of carry: 3 below, 3 lower left, 3 lower right of an even and of an odd row, 3 two below of each
-    let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
-    let below = p.carried(0, stride);
-    let lower_left = p.carried(3, stride);
-    let (lower_right, upper_left) = (p.carried(6 + this, stride), p.carried(6 + other, stride));
-    let two_below = p.carried(12 + this, stride);
+    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = p.carried(row, stride);
     let none = Three([zero; 3]);
     let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
     let mut column = 0;

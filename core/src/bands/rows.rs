@@ -8,7 +8,7 @@
 //! and velocities of its own rows alone.
 #![allow(unsafe_code)] // pointers into planes that bands share: the caller's promises, see `crate::bands`
 
-use crate::force::{Constants, Pointers, Springs6, Substep, begin, sweep_row};
+use crate::force::{Carried, Constants, Pointers, Springs6, Substep, begin, sweep_row, three_rows};
 use crate::simd::{Pass, Three, Vector, load};
 
 /// Rows of numbers of a border: springs along v, the two diagonals, the bend springs from the last row but one above and
@@ -34,15 +34,6 @@ pub(crate) struct Rows {
     pub below: *mut f32,
 }
 
-impl Rows {
-    /// Column 0 of three rows of a border.
-    #[inline(always)]
-    fn border(from: *mut f32, row: usize, stride: usize) -> [*mut f32; 3] {
-        let first = from.wrapping_add(row.wrapping_mul(stride).wrapping_add(16));
-        [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
-    }
-}
-
 /// Works out what crosses the border above.
 ///
 /// Safety, as this is no unsafe function: only [`crate::bands`] makes one, where nobody writes the positions of the two rows
@@ -60,7 +51,7 @@ impl Pass for Cross {
         }
         let k = Constants::new(zero, &self.0.constants);
         let n = self.0.columns.div_ceil(V::LANES) * V::LANES;
-        let (this, other) = (first % 2 * 3, 3 - first % 2 * 3);
+        let carried = p.carried(first, stride);
         let (last, last_but_one) = ((first - 1).wrapping_mul(stride), (first - 2).wrapping_mul(stride));
         let mut column = 0;
         while column < n {
@@ -70,28 +61,28 @@ impl Pass for Cross {
                 let here = Three::load(zero, &p.x, at);
                 let down = at.wrapping_add(stride);
                 let e = begin(&k, &p, here, down, k.rest_v).force(&k, load(zero, p.v_down, at));
-                e.store(&p.carried(0, stride), column);
-                e.store(&Rows::border(above, 0, stride), column);
+                e.store(&carried.below, column);
+                e.store(&three_rows(above, 0, stride), column);
                 if self.0.shear {
                     let e =
                         begin(&k, &p, here, down.wrapping_sub(1), k.rest_diagonal).force(&k, load(zero, p.left, at));
-                    e.store(&p.carried(3, stride), column);
-                    e.store(&Rows::border(above, 3, stride), column);
+                    e.store(&carried.lower_left, column);
+                    e.store(&three_rows(above, 3, stride), column);
                     let e =
                         begin(&k, &p, here, down.wrapping_add(1), k.rest_diagonal).force(&k, load(zero, p.right, at));
-                    e.store(&p.carried(6 + other, stride), column);
-                    e.store(&Rows::border(above, 6, stride), column);
+                    e.store(&carried.upper_left, column);
+                    e.store(&three_rows(above, 6, stride), column);
                 }
                 if self.0.bend {
                     let up = last_but_one.wrapping_add(column);
                     let from = Three::load(zero, &p.x, up);
                     let e = begin(&k, &p, from, down, k.bend_v).force(&k, load(zero, p.bend_v, up));
-                    e.store(&p.carried(12 + this, stride), column);
-                    e.store(&Rows::border(above, 9, stride), column);
+                    e.store(&carried.two_below, column);
+                    e.store(&three_rows(above, 9, stride), column);
                     let e =
                         begin(&k, &p, here, down.wrapping_add(stride), k.bend_v).force(&k, load(zero, p.bend_v, at));
-                    e.store(&p.carried(12 + other, stride), column);
-                    e.store(&Rows::border(above, 12, stride), column);
+                    e.store(&carried.two_below_next, column);
+                    e.store(&three_rows(above, 12, stride), column);
                 }
             }
             column = column.wrapping_add(V::LANES);
@@ -164,11 +155,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
     n: usize,
 ) {
     let first = row.wrapping_mul(stride);
-    let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
-    let below = p.carried(0, stride);
-    let lower_left = p.carried(3, stride);
-    let (lower_right, upper_left) = (p.carried(6 + this, stride), p.carried(6 + other, stride));
-    let two_below = p.carried(12 + this, stride);
+    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = p.carried(row, stride);
     let none = Three([zero; 3]);
     let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
     let mut column = 0;
@@ -185,7 +172,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
             before = e;
 
             let e = if LAST {
-                Three::load(zero, &Rows::border(border, 0, stride), column)
+                Three::load(zero, &three_rows(border, 0, stride), column)
             } else {
                 begin(k, p, here, down, k.rest_v).force(k, load(zero, p.v_down, at))
             };
@@ -194,7 +181,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
 
             if SHEAR {
                 let e = if LAST {
-                    Three::load(zero, &Rows::border(border, 6, stride), column)
+                    Three::load(zero, &three_rows(border, 6, stride), column)
                 } else {
                     begin(k, p, here, down.wrapping_add(1), k.rest_diagonal).force(k, load(zero, p.right, at))
                 };
@@ -202,7 +189,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
                 e.store(&lower_right, column);
 
                 let e = if LAST {
-                    Three::load(zero, &Rows::border(border, 3, stride), column)
+                    Three::load(zero, &three_rows(border, 3, stride), column)
                 } else {
                     begin(k, p, here, down.wrapping_sub(1), k.rest_diagonal).force(k, load(zero, p.left, at))
                 };
@@ -215,7 +202,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
                 bend_before2 = bend_before;
                 bend_before = e;
 
-                let e = Three::load(zero, &Rows::border(border, if LAST { 12 } else { 9 }, stride), column);
+                let e = Three::load(zero, &three_rows(border, if LAST { 12 } else { 9 }, stride), column);
                 f = f.plus(e).minus(Three::load(zero, &two_below, column));
                 e.store(&two_below, column);
             }
