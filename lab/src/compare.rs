@@ -18,7 +18,7 @@ pub const INERTIA_RADIUS: f32 = 0.3;
 pub const INERTIA_MAX: f32 = 32.0;
 
 /// Stiffness that every budget cuts: "as stiff as the step allows" in N/m.
-const BEYOND: f32 = 1e8;
+pub const BEYOND: f32 = 1e8;
 
 /// Warp, weft, shear, bend: the best of the analytic choices where the budget clamps them all.
 pub const RATIOS: [f32; 4] = [1.0, 1.0, 0.3, 0.02];

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use taut::{Budget, ClothDef, Features, Grid, GridDef};
 
 use super::search::Criterion;
-use crate::compare::{INERTIA_MAX, INERTIA_RADIUS, Limits, RATIOS};
+use crate::compare::{BEYOND, INERTIA_MAX, INERTIA_RADIUS, Limits, RATIOS};
 
 /// Frames per second.
 pub const RATE_HZ: f32 = 60.0;
@@ -14,9 +14,6 @@ pub const SIDE_M: f32 = 1.0;
 
 /// Damping in 1/s.
 pub const DAMPING_PER_S: f32 = 2.0;
-
-/// Stiffness that every budget cuts, in N/m.
-const BEYOND: f32 = 1e8;
 
 /// What keeps lengths beside the springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
