@@ -1,27 +1,36 @@
 #!/usr/bin/env bash
 # Builds the C library and installs it for C and C++: headers, static and shared library, CMake package, pkg-config file.
 #
-#     ./install.sh --prefix DIR [--target-dir DIR]
+#     ./install.sh --prefix DIR [--target-dir DIR] [--vectors sse2|avx2|avx512]
 #
-# DESTDIR, if set, is put before the prefix. The installed tree may be moved as a whole. For Linux and macOS.
+# --vectors names the widest vectors of x86_64 that are built in (default avx512): a narrower library is smaller, with the
+# same bits. DESTDIR, if set, is put before the prefix. The installed tree may be moved as a whole. For Linux and macOS.
 set -euo pipefail
 cd "$(dirname "$0")"
 
 usage() {
-  sed -n '2,6s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
 
-prefix="" build=target/package
+prefix="" build=target/package vectors=avx512
 while [ $# -gt 0 ]; do
   case $1 in
     --prefix) [ $# -ge 2 ] || usage; prefix=$2; shift 2 ;;
     --prefix=*) prefix=${1#*=}; shift ;;
     --target-dir) [ $# -ge 2 ] || usage; build=$2; shift 2 ;;
     --target-dir=*) build=${1#*=}; shift ;;
+    --vectors) [ $# -ge 2 ] || usage; vectors=$2; shift 2 ;;
+    --vectors=*) vectors=${1#*=}; shift ;;
     *) usage ;;
   esac
 done
+case $vectors in
+  sse2) features="" ;;
+  avx2) features=avx2 ;;
+  avx512) features=avx2,avx512 ;;
+  *) usage ;;
+esac
 [ -n "$prefix" ] || usage
 
 number() { sed -n "s/^#define TAUT_VERSION_$1 \([0-9]*\)\$/\1/p" include/taut.h; }
@@ -48,7 +57,8 @@ case $(uname -s) in
 esac
 
 # The same library as that of `cargo build --release -p taut-ffi`, in a folder of its own since the name within differs.
-cargo rustc --release --locked -p taut-ffi --lib --target-dir "$build" -- -C link-arg="$link" -C strip=symbols
+cargo rustc --release --locked -p taut-ffi --lib --no-default-features --features "$features" --target-dir "$build" -- \
+  -C link-arg="$link" -C strip=symbols
 pointer_bytes=$(getconf LONG_BIT | awk '{ print $1 / 8 }')
 
 root=${DESTDIR:-}$prefix

@@ -166,10 +166,10 @@ pub(crate) fn run<P: Pass>(width: Supported, pass: P) -> P::Output {
         #[cfg(target_arch = "x86_64")]
         Width::Sse2 => x86::sse2(pass),
         // SAFETY: a Supported is made only where the processor has the width.
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "avx2"))]
         Width::Avx2 => unsafe { x86::avx2(pass) },
         // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "avx512"))]
         Width::Avx512 => unsafe { x86::avx512(pass) },
         #[cfg(target_arch = "aarch64")]
         Width::Neon => neon::neon(pass),
@@ -183,15 +183,15 @@ pub(crate) fn run<P: Pass>(width: Supported, pass: P) -> P::Output {
     }
 }
 
-/// Whether this processor, under this operating system, has a width.
+/// Whether this processor, under this operating system, has a width, and the library its code.
 pub(crate) fn has(width: Width) -> bool {
     match width {
         Width::Scalar => true,
         #[cfg(target_arch = "x86_64")]
         Width::Sse2 => true,
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "avx2"))]
         Width::Avx2 => x86::has_avx2(),
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "avx512"))]
         Width::Avx512 => x86::has_avx512(),
         #[cfg(target_arch = "aarch64")]
         Width::Neon => true,

@@ -3,6 +3,7 @@
 //! The intrinsics want their instructions to be there: they are wherever a value exists (see the module above). They are
 //! compiled in line into [`sse2`], [`avx2`] or [`avx512`], which switch the instructions on for the compiler.
 #![allow(unsafe_code, unused_unsafe)] // SSE2 is on for the whole crate, so its intrinsics are safe to call
+#![cfg_attr(not(all(feature = "avx2", feature = "avx512")), allow(dead_code))] // what is left out is not used
 
 use core::arch::x86_64::*;
 use core::ops::{Add, Div, Mul, Sub};
