@@ -25,7 +25,7 @@ pub struct DataArgs {
     /// Make the i-th of n shares, i from 1; shares merge by lying in one folder
     #[arg(long, value_name = "i/n")]
     pub shard: Option<Shard>,
-    /// A set of 124 pictures instead of 7338
+    /// A set of 63 pictures of short motions instead of 7338
     #[arg(long)]
     pub quick: bool,
     /// Threads [default: one for each core]

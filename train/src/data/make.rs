@@ -10,8 +10,9 @@ use crate::reference::{Cloth, ReferenceError, V3, scenes};
 /// Steps of a second; ARCSim's scenes have 240, and their shapes at rest are the same.
 const STEPS_PER_S: f64 = 120.0;
 
-/// How long the motion is, in s: until the first swing is over.
-const MOTION_S: f64 = 1.5;
+/// How long a cloth moves before it is brought to rest, where its motion is not looked at: folds form in it, in s.
+const FOLDING_S: f64 = 1.5;
+const HANGING_S: f64 = 0.4;
 
 /// The steps of a cloth that blew up are made shorter this often.
 const ATTEMPTS: u32 = 3;
@@ -40,12 +41,12 @@ pub(super) fn frames(t: &Trajectory) -> Result<Vec<Frame>, ReferenceError> {
     let moving = t.frames - 1;
     let at = |k: usize| {
         let share = f64::from(noise::uniform(t.seed ^ 0x74_696d_65, k as u32));
-        MOTION_S * (k as f64 + share) / moving as f64
+        t.motion_s * (k as f64 + share) / moving as f64
     };
     let times: Vec<f64> = (0..moving).map(at).collect();
     attempts(|steps_per_s| {
         let mut cloth = set_up(&t.fabric, t.scene, GRID, t.seed, true)?;
-        let steps = (MOTION_S * steps_per_s).round() as usize;
+        let steps = (t.motion_s * steps_per_s).round() as usize;
         let mut frames = Vec::with_capacity(t.frames);
         for step in 1..=steps {
             cloth.step(1.0 / steps_per_s)?;
@@ -55,7 +56,7 @@ pub(super) fn frames(t: &Trajectory) -> Result<Vec<Frame>, ReferenceError> {
             }
         }
         let at_rest = rest(&mut cloth, t.scene)?;
-        frames.push(Frame { time_s: MOTION_S, at_rest, positions: positions(&cloth, GRID) });
+        frames.push(Frame { time_s: t.motion_s, at_rest, positions: positions(&cloth, GRID) });
         Ok(frames)
     })
 }
@@ -68,7 +69,8 @@ pub(super) fn frames(t: &Trajectory) -> Result<Vec<Frame>, ReferenceError> {
 pub fn settled(fabric: &Fabric, scene: Scene, side: usize, seed: u64) -> Result<(Vec<f32>, bool), ReferenceError> {
     attempts(|steps_per_s| {
         let mut cloth = set_up(fabric, scene, side, seed, false)?;
-        for _ in 0..(if scene.folds() { MOTION_S } else { 0.25 * MOTION_S } * steps_per_s) as usize {
+        let motion_s = if scene.folds() { FOLDING_S } else { HANGING_S };
+        for _ in 0..(motion_s * steps_per_s) as usize {
             cloth.step(1.0 / steps_per_s)?;
         }
         let at_rest = rest(&mut cloth, scene)?;

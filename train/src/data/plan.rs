@@ -7,6 +7,10 @@ use super::{GRID, Scene, fabric};
 /// Pictures of one trajectory: the last is at rest.
 const FRAMES: usize = 8;
 
+/// How long a cloth moves, in s: until the first swing is over; and in a quick set.
+const MOTION_S: f64 = 1.5;
+const QUICK_MOTION_S: f64 = 0.3;
+
 /// Trajectories of a part: four fabrics in five scenes.
 const PART: usize = 20;
 
@@ -75,6 +79,8 @@ pub struct Trajectory {
     pub scene: Scene,
     /// Seed of its start and pins.
     pub seed: u64,
+    /// How long it moves, in s.
+    pub motion_s: f64,
     /// How many pictures are taken; the last is at rest.
     pub frames: usize,
 }
@@ -101,8 +107,8 @@ impl Plan {
     pub fn images(&self, split: Split) -> usize {
         let [whole, quick] = match split {
             Split::Training => [4615, 40],
-            Split::Evaluation => [1680, 40],
-            Split::Test => [1023, 39],
+            Split::Evaluation => [1680, 9],
+            Split::Test => [1023, 9],
             Split::Comparison => [20, 5],
         };
         if self.quick { quick } else { whole }
@@ -123,6 +129,7 @@ impl Plan {
                 words,
                 scene,
                 seed: noise::bits(self.seed ^ ((split as u64 + 1) << 32), number as u32),
+                motion_s: if self.quick { QUICK_MOTION_S } else { MOTION_S },
                 frames: frames.min(images - number * frames),
             })
             .collect()

@@ -74,19 +74,23 @@ fn shares_and_an_interrupted_run_are_the_whole() {
     let expected = files(&whole);
     assert_eq!(expected.len(), 1 + 3 * 4, "{:?}", expected.iter().map(|f| &f.0).collect::<Vec<_>>());
 
-    // in another order, by one thread each, one of them twice
-    for share in ["3/3", "1/3", "2/3", "1/3"] {
+    // shares of the parts, in another order and by one thread
+    for share in ["3/4", "2/4"] {
         make(&DataArgs { shard: Some(share.parse().unwrap()), threads: Some(1), ..args(&shares) }).unwrap();
     }
-    assert!(files(&shares) == expected, "shares differ from the whole");
+    let made = files(&shares);
+    assert_eq!(made.len(), 1 + 2 * 3);
+    assert!(made.iter().all(|f| expected.contains(f)), "shares differ from the whole");
+    assert!(matches!(load(&shares, Split::Training), Err(DataError::Incomplete { missing: 1, of: 1, .. })));
 
-    // stopped before the first picture, and killed between the two files of a part
+    // stopped before the first picture; then merged with what another machine made, and killed between a part's two files
     let stopped = run_until(&args(&cut), &AtomicBool::new(true));
     assert!(matches!(stopped, Err(DataError::Interrupted)));
-    make(&DataArgs { shard: Some("2/4".parse().unwrap()), ..args(&cut) }).unwrap();
-    assert!(matches!(load(&cut, Split::Training), Err(DataError::Incomplete { missing: 1, of: 1, .. })));
-    fs::write(cut.join("training-000.npz"), &expected[0].1[..10]).unwrap();
-    fs::write(cut.join("test-000.npz.new"), b"half").unwrap();
+    for (name, bytes) in expected.iter().filter(|(name, _)| !name.starts_with("evaluation")) {
+        fs::write(cut.join(name), bytes).unwrap();
+    }
+    fs::write(cut.join("evaluation-000.npz"), b"half").unwrap();
+    fs::write(cut.join("evaluation-000.npz.new"), b"half").unwrap();
     make(&args(&cut)).unwrap();
     assert!(files(&cut) == expected, "a resumed run differs");
 
@@ -114,7 +118,8 @@ fn what_is_read_is_what_was_made(folder: &Path) {
             assert!(frames.windows(2).all(|w| w[0].time_s <= w[1].time_s && !w[0].at_rest));
             // a picture is the picture of its positions, but for its 256 levels
             let last = frames[t.frames - 1];
-            assert!(last.at_rest, "{} {}", t.words, t.scene);
+            // the motion of a quick set ends before the cloth lies on the ball
+            assert!(last.at_rest || t.scene == Scene::Drape, "{} {}", t.words, t.scene);
             let config = crate::image::RenderConfig { channels: CHANNELS.to_vec(), ..Default::default() };
             let renderer = crate::image::Renderer::new(config, GRID, GRID).unwrap();
             let drawn = renderer.render(&t.scene.view().of(&last.positions)).unwrap();
