@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 use super::{AdversarialLoss, Stage, TrainError};
 use crate::data::Scene;
 use crate::image::Channel;
+use crate::own::OwnFabric;
 
 /// Which cloth is real.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,6 +69,8 @@ pub struct TrainConfig {
     pub scenes: Vec<Scene>,
     /// Whether fabrics that `taut-train data` keeps for evaluation and test are kept out of training ([`crate::data::Split`]).
     pub held_out: bool,
+    /// Fabrics of one's own (`taut-train fabric`): a quarter of what the first stage hears, and in the training set of the others.
+    pub own: Vec<OwnFabric>,
     /// Fabrics of the training set; each hangs in every scene.
     pub fabrics: usize,
     /// Fabrics of the evaluation set, drawn apart.
@@ -136,6 +139,7 @@ impl Default for TrainConfig {
             reference: Reference::Core,
             scenes: vec![Scene::Hang2, Scene::Edge],
             held_out: false,
+            own: vec![],
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
@@ -210,6 +214,9 @@ impl TrainConfig {
             must(*scene != Scene::Drape, "scenes: the cloth of training has no ball, so drape is not one of them")?;
             let known = self.reference == Reference::Continuum || *scene != Scene::Pins;
             must(known, "scenes: pins is for the reference `continuum`")?;
+        }
+        for fabric in &self.own {
+            fabric.check().map_err(|e| TrainError::Config(format!("own: {e}")))?;
         }
         let flat = self.scenes.iter().any(|s| !s.folds());
         must(flat || self.steps.positions == 0, "scenes: positions need one of hang2, edge, pins")?;

@@ -8,10 +8,11 @@ use taut_lab::fabric::{self, Fabric, KINDS};
 
 use super::{Reference, TrainConfig, TrainError};
 use crate::cloth::{self, SceneDef, Springs};
-use crate::data::{Scene, Split, settled};
+use crate::data::{Scene, Split, piece, settled};
 use crate::export::ExportMeta;
 use crate::image::Renderer;
 use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, NOISE};
+use crate::own::OwnFabric;
 use crate::words::WordTable;
 use crate::words::tokens::{resolve, tokenize};
 
@@ -24,6 +25,9 @@ const STREAM: u64 = 0x7374_7265;
 /// Seeds of the pins of a fabric, and of what is drawn again.
 const PINS: u64 = 0x7069_6e73;
 const AGAIN: u64 = 0x6167_6169;
+
+/// One of so many draws of the stream is a fabric of one's own, where there are some.
+const OWN_EVERY: u32 = 4;
 
 /// Least share of shear in the mean structural stiffness. A game's step cuts every family alike, and then a weak shear takes
 /// the strain. More than this costs the warp its budget, and knits their own stretch (table in docs/training.md).
@@ -90,6 +94,7 @@ pub struct Dataset {
     words: WordTable,
     seed: u64,
     held_out: bool,
+    own: Vec<OwnFabric>,
     variation: f64,
     codings: ([Coding; CHANNELS], [Coding; FABRIC]),
 }
@@ -103,12 +108,20 @@ impl Dataset {
         renderer: &Renderer,
         mut progress: impl FnMut(f32),
     ) -> Result<Dataset, TrainError> {
-        let total = (config.fabrics + config.evaluation_fabrics) * config.scenes.len();
+        let words = weighted(words);
+        if let Some(own) = config.own.iter().find(|own| known(&words, &own.words).is_empty()) {
+            return Err(TrainError::Config(format!("own: no word of `{}` is in the word table", own.words)));
+        }
+        let total = (config.fabrics + config.own.len() + config.evaluation_fabrics) * config.scenes.len();
         let mut done = 0;
         let mut set = |seed: u64, count: usize, split: Split| -> Result<Vec<Example>, TrainError> {
             let mut out = Vec::new();
-            for i in 0..count {
-                let (fabric, words) = draw(seed, i as u32, config.held_out.then_some(split));
+            let own: &[OwnFabric] = if split == Split::Training { &config.own } else { &[] };
+            for i in 0..count + own.len() {
+                let (fabric, words) = match i.checked_sub(count).and_then(|i| own.get(i)) {
+                    Some(own) => (own.fabric(), own.words.clone()),
+                    None => draw(seed, i as u32, config.held_out.then_some(split)),
+                };
                 for scene in &config.scenes {
                     let pins = noise::bits(seed ^ PINS, i as u32);
                     // a cloth that does not come to rest tells nothing of rest
@@ -125,7 +138,8 @@ impl Dataset {
         Ok(Dataset {
             training: set(config.seed, config.fabrics, Split::Training)?,
             evaluation: set(config.seed ^ EVALUATION, config.evaluation_fabrics, Split::Evaluation)?,
-            words: weighted(words),
+            words,
+            own: config.own.clone(),
             seed: config.seed,
             held_out: config.held_out,
             variation: config.variation,
@@ -145,7 +159,11 @@ impl Dataset {
 
     /// A fabric and its words for the first stage: number `index` of an endless stream.
     pub fn streamed(&self, index: u32) -> (Fabric, String) {
-        draw(self.seed ^ STREAM, index, self.held_out.then_some(Split::Training))
+        let seed = self.seed ^ STREAM;
+        match self.own.get((index / OWN_EVERY) as usize % self.own.len().max(1)) {
+            Some(own) if index.is_multiple_of(OWN_EVERY) => (piece(&own.fabric(), seed, index), own.words.clone()),
+            _ => draw(seed, index, self.held_out.then_some(Split::Training)),
+        }
     }
 
     /// The description vector of some words: the sum of their vectors, [1024].
@@ -161,10 +179,7 @@ impl Dataset {
 
     /// The known words of a text, at most 16, as the runtime takes them.
     pub fn indices(&self, words: &str) -> Vec<usize> {
-        let look = |w: &str| self.words.index(w);
-        let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
-        out.truncate(crate::export::TOKENS);
-        out
+        known(&self.words, words)
     }
 
     /// The noise of a draw, [128].
@@ -197,6 +212,14 @@ impl Dataset {
         let numbers = [fabric.density_kg_m2, fabric.hinge_rigidity_n_m, limits[0], limits[1], limits[2]];
         std::array::from_fn(|i| self.codings.1[i].encode(f64::from(numbers[i])))
     }
+}
+
+/// The known words of a text, at most 16.
+fn known(table: &WordTable, words: &str) -> Vec<usize> {
+    let look = |w: &str| table.index(w);
+    let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
+    out.truncate(crate::export::TOKENS);
+    out
 }
 
 /// A smooth pattern of deviation about 1 over the field from the first numbers of the noise.
