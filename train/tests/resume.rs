@@ -14,6 +14,7 @@ use taut_train::words::WordTable;
 /// Two steps of each stage on a tiny cloth.
 fn config() -> TrainConfig {
     TrainConfig {
+        scenes: vec![Scene::Hang2, Scene::Hang1],
         fabrics: 2,
         evaluation_fabrics: 1,
         steps: StageSteps { matching: 2, positions: 2, adversarial: 2 },
