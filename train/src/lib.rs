@@ -1,10 +1,12 @@
 //! Training: the GAN of Wang and Wang (2021) with a differentiable cloth, and the ONNX export.
 
 pub mod cloth;
+pub mod data;
 pub mod export;
 pub mod gan;
 pub mod image;
 pub mod nets;
+pub mod own;
 pub mod reference;
 mod sparse;
 pub mod words;

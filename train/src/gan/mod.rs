@@ -19,11 +19,11 @@ mod program;
 mod trainer;
 
 pub use checkpoint::Checkpoint;
-pub use config::{StageSteps, TrainConfig};
+pub use config::{Reference, StageSteps, TrainConfig};
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
-pub use losses::{Ratings, discriminator_loss, generator_loss, weight_penalty};
+pub use losses::{AdversarialLoss, Adversary, Ratings, weight_penalty};
 pub use program::{RunArgs, run};
-pub use trainer::{Stage, Trainer, pin_map};
+pub use trainer::{Score, Stage, Trainer, pin_map};
 
 use std::fmt;
 
