@@ -163,7 +163,7 @@ fn contact_sheet(path: &Path, samples: &[Sample]) -> Result<(), DataError> {
     const SCENES: usize = super::Scene::ALL.len();
     let trajectories: Vec<&[Sample]> = samples.chunk_by(|a, b| a.scene == b.scene && a.fabric == b.fabric).collect();
     let fabrics = trajectories.len() / SCENES;
-    let shown = fabrics.min(FABRICS).max(1);
+    let shown = fabrics.clamp(1, FABRICS);
     let chosen = (0..shown).flat_map(|i| trajectories.iter().skip(i * fabrics / shown * SCENES).take(SCENES));
     let (mut moving, mut resting) = (Vec::new(), Vec::new());
     for trajectory in chosen {

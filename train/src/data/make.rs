@@ -40,7 +40,7 @@ pub(super) struct Frame {
 pub(super) fn frames(t: &Trajectory) -> Result<Vec<Frame>, ReferenceError> {
     let moving = t.frames - 1;
     let at = |k: usize| {
-        let share = f64::from(noise::uniform(t.seed ^ 0x74_696d_65, k as u32));
+        let share = f64::from(noise::uniform(t.seed ^ 0x7469_6d65, k as u32));
         t.motion_s * (k as f64 + share) / moving as f64
     };
     let times: Vec<f64> = (0..moving).map(at).collect();
@@ -97,7 +97,7 @@ fn set_up(fabric: &Fabric, scene: Scene, side: usize, seed: u64, tilted: bool) -
     // the mesh counts rows from the bottom
     let pins: Vec<usize> = scene.pins(side, seed).iter().map(|p| (side - 1 - p / side) * side + p % side).collect();
     if !scene.folds() {
-        let angle = if tilted { TILT * f64::from(2.0 * noise::uniform(seed ^ 0x74_696c_74, 0) - 1.0) } else { 0.0 };
+        let angle = if tilted { TILT * f64::from(2.0 * noise::uniform(seed ^ 0x7469_6c74, 0) - 1.0) } else { 0.0 };
         let (sin, cos) = angle.sin_cos();
         for [_, y, z] in &mut x {
             (*y, *z) = (cos * *y - sin * *z, sin * *y + cos * *z);

@@ -84,13 +84,11 @@ pub(super) fn has(folder: &Path, split: Split, part: usize) -> bool {
     paths(folder, split, part).iter().all(|p| p.exists())
 }
 
+/// The frames of a trajectory with their pictures.
+pub(super) type Pictures<'a> = (&'a Trajectory, Vec<(Frame, Vec<f32>)>);
+
 /// Writes a part: frames of its trajectories with their pictures.
-pub(super) fn write(
-    folder: &Path,
-    split: Split,
-    part: usize,
-    all: &[(&Trajectory, Vec<(Frame, Vec<f32>)>)],
-) -> Result<(), DataError> {
+pub(super) fn write(folder: &Path, split: Split, part: usize, all: &[Pictures<'_>]) -> Result<(), DataError> {
     let [npz_path, lines_path] = paths(folder, split, part);
     let (mut images, mut positions, mut lines) = (Vec::new(), Vec::new(), String::new());
     for (t, frames) in all {
