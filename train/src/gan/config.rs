@@ -13,6 +13,20 @@ pub enum Reference {
     Core,
     /// The continuum cloth of [`crate::reference`].
     Continuum,
+    /// Each for every other fabric. Springs have one stiffness at every strain, and a knit has not: the core says what the game's
+    /// own sheet does with the stiffness that the words mean, the continuum what the fabric does.
+    Both,
+}
+
+impl Reference {
+    /// The cloth that is real for fabric number `index`: the core or the continuum.
+    pub fn of(self, index: usize) -> Reference {
+        match self {
+            Reference::Both if index % 2 == 0 => Reference::Core,
+            Reference::Both => Reference::Continuum,
+            one => one,
+        }
+    }
 }
 
 /// Steps of each stage.
@@ -136,7 +150,7 @@ impl Default for TrainConfig {
             conditional: true,
             picture: vec![Channel::Checker, Channel::Silhouette],
             grid: 16,
-            reference: Reference::Continuum,
+            reference: Reference::Both,
             scenes: vec![Scene::Hang2, Scene::Edge, Scene::Pins, Scene::Hang1],
             held_out: false,
             own: vec![],
@@ -212,8 +226,8 @@ impl TrainConfig {
         must(!self.scenes.is_empty() && !twice, "scenes must name one scene or more, none twice")?;
         for scene in &self.scenes {
             must(*scene != Scene::Drape, "scenes: the cloth of training has no ball, so drape is not one of them")?;
-            let known = self.reference == Reference::Continuum || *scene != Scene::Pins;
-            must(known, "scenes: pins is for the reference `continuum`")?;
+            let known = self.reference != Reference::Core || *scene != Scene::Pins;
+            must(known, "scenes: pins is for the continuum cloth")?;
         }
         for fabric in &self.own {
             fabric.check().map_err(|e| TrainError::Config(format!("own: {e}")))?;

@@ -122,10 +122,13 @@ impl Dataset {
                     Some(own) => (own.fabric(), own.words.clone()),
                     None => draw(seed, i as u32, config.held_out.then_some(split)),
                 };
-                for scene in &config.scenes {
+                let real = config.reference.of(i);
+                // the core knows no sheet that is pinned anywhere
+                let scenes = config.scenes.iter().filter(|s| real != Reference::Core || **s != Scene::Pins);
+                for scene in scenes {
                     let pins = noise::bits(seed ^ PINS, i as u32);
                     // a cloth that does not come to rest tells nothing of rest
-                    out.extend(example(config, &fabric, &words, *scene, pins, renderer)?);
+                    out.extend(example((config, real), &fabric, &words, *scene, pins, renderer)?);
                     done += 1;
                     progress(done as f32 / total as f32);
                 }
@@ -265,16 +268,16 @@ fn draw(seed: u64, index: u32, split: Option<Split>) -> (Fabric, String) {
 }
 
 fn example(
-    config: &TrainConfig,
+    (config, real): (&TrainConfig, Reference),
     fabric: &Fabric,
     words: &str,
     scene: Scene,
     draw: u64,
     renderer: &Renderer,
 ) -> Result<Option<Example>, TrainError> {
-    let reference = match config.reference {
+    let reference = match real {
         Reference::Core => reference(config.grid, fabric, scene)?,
-        Reference::Continuum => match settled(fabric, scene, config.grid, draw).map_err(TrainError::part)? {
+        _ => match settled(fabric, scene, config.grid, draw).map_err(TrainError::part)? {
             (positions, true) => positions,
             (_, false) => return Ok(None),
         },
