@@ -80,6 +80,7 @@ pub struct Example {
 }
 
 /// Everything that the stages draw from.
+#[derive(Clone)]
 pub struct Dataset {
     /// Examples of training.
     pub training: Vec<Example>,
@@ -212,7 +213,7 @@ pub fn salience(word: &str) -> f32 {
 }
 
 /// The table with every vector as long as its word is salient.
-fn weighted(mut words: WordTable) -> WordTable {
+pub(crate) fn weighted(mut words: WordTable) -> WordTable {
     let dimensions = words.dimensions();
     for (token, vector) in words.tokens.iter().zip(words.vectors.chunks_exact_mut(dimensions)) {
         let weight = salience(token);
@@ -238,6 +239,7 @@ fn example(
             let def = SceneDef {
                 density_kg_m2: f64::from(fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(*substeps)),
+                inertia_radius_m: if config.inertia { f64::from(compare::INERTIA_RADIUS) } else { 0.0 },
                 ..SceneDef::hung(&springs, &scene.pins(config.grid, config.grid))
             };
             let mut cloth = cloth::Scene::new(&springs, def)?;

@@ -13,16 +13,20 @@
 mod checkpoint;
 mod config;
 mod data;
+mod gradient;
 mod head;
 mod losses;
+mod plot;
 mod program;
 mod trainer;
 
 pub use checkpoint::Checkpoint;
-pub use config::{StageSteps, TrainConfig};
+pub use config::{ONE_MATRIX, StageSteps, TrainConfig};
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
 pub use losses::{Ratings, discriminator_loss, generator_loss, weight_penalty};
-pub use program::{RunArgs, run};
+pub use program::{RunArgs, renderer, run, train_in};
+pub(crate) use data::weighted;
+pub(crate) use program::{bar, write_whole};
 pub use trainer::{Stage, Trainer, pin_map};
 
 use std::fmt;
