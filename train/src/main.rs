@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use taut_train::{gan, reference, words};
+use taut_train::{evaluate, gan, reference, words};
 
 /// Trains the generator of taut: words in, a stiffness field out.
 #[derive(Debug, Parser)]
@@ -17,6 +17,8 @@ struct Program {
 enum Command {
     /// From nothing to a generator file; goes on where an interrupted run of the same folder ended
     Run(gan::RunArgs),
+    /// The figures of the paper's evaluation, and fabrics that no net has seen
+    Evaluate(evaluate::EvaluateArgs),
     /// The continuum cloth that stands in for ARCSim, beside its runs where there are some
     Reference(reference::command::ReferenceArgs),
     /// Word vectors
@@ -28,6 +30,9 @@ fn main() -> ExitCode {
     let result = match Program::parse().command {
         Command::Run(args) => {
             gan::run(&args).map_err(|e| (e.to_string(), matches!(e, gan::TrainError::Interrupted { .. })))
+        }
+        Command::Evaluate(args) => {
+            evaluate::run(&args).map_err(|e| (e.to_string(), matches!(e, evaluate::EvaluateError::Interrupted)))
         }
         Command::Reference(args) => reference::command::run(&args)
             .map_err(|e| (e.to_string(), matches!(e, reference::command::CommandError::Interrupted))),

@@ -103,6 +103,8 @@ mod tests {
         for net in &nets[1..] {
             assert_eq!(differences(&nets[0], net), ["picture_noise"]);
         }
-        assert!((nets[5].picture_noise[0] - 0.06).abs() < 1e-12 && nets[5].picture_noise[0] == nets[5].picture_noise[1]);
+        assert!(
+            (nets[5].picture_noise[0] - 0.06).abs() < 1e-12 && nets[5].picture_noise[0] == nets[5].picture_noise[1]
+        );
     }
 }

@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 pub(super) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let cells = || rows.iter().map(|r| r.iter().map(String::as_str).collect::<Vec<_>>());
     let widths: Vec<usize> = (0..header.len())
-        .map(|c| cells().filter_map(|r| r.get(c).map(|s| s.chars().count())).fold(header[c].chars().count(), usize::max))
+        .map(|c| {
+            cells().filter_map(|r| r.get(c).map(|s| s.chars().count())).fold(header[c].chars().count(), usize::max)
+        })
         .collect();
     let line = |cells: &[&str]| {
         let mut line = String::from("|");

@@ -22,10 +22,10 @@ mod trainer;
 
 pub use checkpoint::Checkpoint;
 pub use config::{ONE_MATRIX, StageSteps, TrainConfig};
+pub(crate) use data::weighted;
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
 pub use losses::{Ratings, discriminator_loss, generator_loss, weight_penalty};
 pub use program::{RunArgs, renderer, run, train_in};
-pub(crate) use data::weighted;
 pub(crate) use program::{bar, write_whole};
 pub use trainer::{Stage, Trainer, pin_map};
 
