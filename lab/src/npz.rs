@@ -95,6 +95,16 @@ impl Npz {
         }
     }
 
+    /// An array of uint8. Errors as [`Npz::floats`].
+    pub fn levels(&mut self, array: &str) -> Result<Array<u8>, NpzError> {
+        let bytes = self.bytes(array)?;
+        let all = Header::parse(&bytes).and_then(|h| match h.kind {
+            "|u1" => h.numbers(|[b]: [u8; 1]| b),
+            kind => Err(format!("uint8 (|u1) expected, not {kind:?}")),
+        });
+        all.map_err(|reason| self.wrong(array, reason))
+    }
+
     /// An array of int32 or int64 whose numbers are indices: 0 to 2^31 - 1. Errors as [`Npz::floats`].
     pub fn indices(&mut self, array: &str) -> Result<Array<usize>, NpzError> {
         let bytes = self.bytes(array)?;
@@ -195,6 +205,8 @@ pub enum Numbers<'a> {
     Floats(&'a [f32]),
     /// As int32.
     Indices(&'a [i32]),
+    /// As uint8.
+    Levels(&'a [u8]),
 }
 
 /// Writes arrays by their names and shapes, compressed as NumPy's `savez_compressed` does. Errors: the file, a shape that
@@ -209,6 +221,7 @@ pub fn write(path: &Path, arrays: &[(&str, &[usize], Numbers<'_>)]) -> Result<()
         let (descr, count, data): (_, _, Vec<u8>) = match numbers {
             Numbers::Floats(all) => ("<f4", all.len(), all.iter().flat_map(|x| x.to_le_bytes()).collect()),
             Numbers::Indices(all) => ("<i4", all.len(), all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+            Numbers::Levels(all) => ("|u1", all.len(), all.to_vec()),
         };
         if shape.iter().product::<usize>() != count {
             return Err(wrong(Some(name), format!("has {count} numbers, which is not the shape {shape:?}")));
@@ -267,8 +280,15 @@ pub(crate) mod tests {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("w.npz");
         let (x, i) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.5], [7, 0, 9]);
-        super::write(&path, &[("x", &[2, 3], Numbers::Floats(&x)), ("i", &[3], Numbers::Indices(&i))]).unwrap();
+        let arrays: [(&str, &[usize], Numbers<'_>); 3] = [
+            ("x", &[2, 3], Numbers::Floats(&x)),
+            ("i", &[3], Numbers::Indices(&i)),
+            ("l", &[2, 1], Numbers::Levels(&[0, 255])),
+        ];
+        super::write(&path, &arrays).unwrap();
         let mut npz = Npz::open(&path).unwrap();
+        assert_eq!(npz.levels("l").unwrap(), Array { shape: vec![2, 1], values: vec![0, 255] });
+        assert!(npz.levels("i").unwrap_err().to_string().contains("uint8 (|u1) expected"));
         assert_eq!(npz.floats("x").unwrap(), Array { shape: vec![2, 3], values: x.to_vec() });
         assert_eq!(npz.indices("i").unwrap(), Array { shape: vec![3], values: vec![7, 0, 9] });
         let e = super::write(&path, &[("x", &[2, 2], Numbers::Floats(&x))]).unwrap_err().to_string();

@@ -1,6 +1,7 @@
 //! Training: the GAN of Wang and Wang (2021) with a differentiable cloth, and the ONNX export.
 
 pub mod cloth;
+pub mod data;
 pub mod evaluate;
 pub mod export;
 pub mod gan;

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use taut_lab::ledger::Ledger;
 
-use super::held::TestSet;
+use super::held::{SCENES, TestSet};
 use super::net::Net;
 use super::{EvaluateError, Shard};
 use crate::gan::{Checkpoint, Dataset, StageSteps, TrainConfig, bar, renderer, train_in};
@@ -27,6 +27,8 @@ pub struct Bench<'a> {
     pub quick: bool,
     /// The generator file that stands for ours.
     pub model: PathBuf,
+    /// Folder of a data set whose test pictures the nets are judged by; without, test fabrics with the core's own reference.
+    pub data_set: Option<PathBuf>,
     /// Set when all shall end.
     pub stop: &'a AtomicBool,
     /// The last training set, with what it was made by.
@@ -43,6 +45,9 @@ struct Header<'a, T: Serialize> {
     made_with: &'a T,
 }
 
+/// Fabrics of the test pictures, each in two scenes: 32 pictures.
+const FABRICS: usize = 16;
+
 /// Version of the rows.
 const VERSION: u32 = 1;
 
@@ -56,6 +61,7 @@ impl<'a> Bench<'a> {
             minutes: 2.0,
             quick: false,
             model: "onnx/generator.onnx".into(),
+            data_set: None,
             stop,
             data: None,
             test: None,
@@ -148,15 +154,19 @@ impl<'a> Bench<'a> {
         Ok(data)
     }
 
-    /// Pictures of `fabrics` test fabrics for nets of a configuration.
-    pub fn test(&mut self, config: &TrainConfig, fabrics: usize) -> Result<Arc<TestSet>, EvaluateError> {
-        let key = format!("{fabrics} {} {:?} {:?}", config.grid, config.substeps, config.picture);
+    /// The pictures that nets of a configuration are judged by.
+    pub fn test(&mut self, config: &TrainConfig) -> Result<Arc<TestSet>, EvaluateError> {
+        let key = format!("{} {:?} {:?}", config.grid, config.substeps, config.picture);
         if let Some((of, set)) = &self.test
             && *of == key
         {
             return Ok(set.clone());
         }
-        let set = Arc::new(TestSet::new(config, Arc::new(renderer(config)?), fabrics)?);
+        let (renderer, fabrics) = (Arc::new(renderer(config)?), if self.quick { 1 } else { FABRICS });
+        let set = Arc::new(match &self.data_set {
+            Some(folder) => TestSet::load(folder, config, renderer, fabrics * SCENES.len())?,
+            None => TestSet::new(config, renderer, fabrics)?,
+        });
         self.test = Some((key, set.clone()));
         Ok(set)
     }

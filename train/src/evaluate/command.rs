@@ -37,6 +37,10 @@ pub struct EvaluateArgs {
     /// A figure; several may be named [default: all]
     #[arg(long, value_name = "FIGURE")]
     pub figure: Vec<Figure>,
+    /// Folder of `taut-train data`, whose test split the nets of 7 and 8 are judged by [default: test fabrics with the core's
+    /// own reference]
+    #[arg(long, value_name = "DIR", conflicts_with = "quick")]
+    pub data: Option<PathBuf>,
     /// Training of each net in minutes of one core, as a number of steps that does not depend on the machine: 0.01 to 600
     #[arg(long, value_name = "M", default_value = "2", value_parser = minutes)]
     pub minutes: f64,
@@ -164,6 +168,7 @@ pub fn evaluate(args: &EvaluateArgs, stop: &AtomicBool) -> Result<(Report, Strin
     bench.minutes = args.minutes;
     bench.quick = args.quick;
     bench.model = args.model.clone();
+    bench.data_set = args.data.clone();
     let asked = |f: Figure| args.figure.is_empty() || args.figure.contains(&f);
     let mut report = Report { minutes: args.minutes, quick: args.quick, ..Report::default() };
     let mut text = String::new();
@@ -227,6 +232,7 @@ mod tests {
         let args = EvaluateArgs {
             out: home.path().into(),
             figure: vec![],
+            data: None,
             minutes: 2.0,
             shard: Shard::WHOLE,
             model: Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/generator.onnx"),

@@ -1,5 +1,6 @@
 //! Fabrics that no net has seen, and how they hang.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use burn::Tensor;
@@ -13,9 +14,11 @@ use super::EvaluateError;
 use super::net::Net;
 use super::score::Scores;
 use crate::cloth::{self, SceneDef, Springs, equilibrium};
+use crate::data::{self, Sample, Split};
 use crate::gan::TrainConfig;
 use crate::image::Renderer;
-use crate::nets::CHANNELS;
+use crate::nets::init::SplitMix64;
+use crate::nets::{CHANNELS, GRID};
 
 /// Seed of the test fabrics; training and evaluation draw by others.
 const SEED: u64 = 0x7465_7374;
@@ -73,8 +76,8 @@ pub fn case(scene: Scene, fabric: &Fabric, side: usize, substeps: u32) -> Case {
 pub struct Item {
     /// What hangs.
     pub held: Held,
-    /// How.
-    pub scene: Scene,
+    /// Pinned particles of the cloth.
+    pins: Vec<usize>,
     /// The clean picture of the reference.
     pub picture: Vec<f32>,
     /// The reference at rest, `[particle][axis]` in m.
@@ -103,16 +106,57 @@ impl TestSet {
                 let outcome = compare::run(&case(scene, &held.fabric, grid, substeps), &setting, |_| ());
                 let positions = outcome.map_err(EvaluateError::part)?.positions.into_flattened();
                 let picture = renderer.render(&positions).map_err(EvaluateError::part)?;
-                items.push(Item { held: held.clone(), scene, picture, positions });
+                items.push(Item { held: held.clone(), pins: scene.pins(grid, grid), picture, positions });
             }
         }
         Ok(TestSet { items, renderer, grid, substeps })
     }
 
+    /// `count` pictures of the test split of a data set, drawn from those at rest in scenes whose folds do not bifurcate. The
+    /// grid of a configuration must be that of the data.
+    pub fn load(
+        folder: &Path,
+        config: &TrainConfig,
+        renderer: Arc<Renderer>,
+        count: usize,
+    ) -> Result<TestSet, EvaluateError> {
+        if config.grid != data::GRID {
+            return Err(EvaluateError::Part(format!("the data are of {0} x {0} particles", data::GRID)));
+        }
+        let all = data::load(folder, Split::Test).map_err(EvaluateError::part)?;
+        let mut fit: Vec<Sample> = all.into_iter().filter(|s| s.at_rest && !s.scene.folds()).collect();
+        if fit.len() < count {
+            let folder = folder.display();
+            return Err(EvaluateError::Part(format!("{folder}: {} test pictures at rest, not {count}", fit.len())));
+        }
+        let mut stream = SplitMix64::new(SEED);
+        for i in 0..count {
+            let other = i + (stream.next_u64() % (fit.len() - i) as u64) as usize;
+            fit.swap(i, other);
+        }
+        let item = |s: Sample| Item {
+            picture: s.picture(&config.picture),
+            held: Held { fabric: s.fabric, words: s.words },
+            pins: s.pins,
+            positions: s.positions,
+        };
+        let items = fit.into_iter().take(count).map(item).collect();
+        let substeps = config.substeps[config.substeps.len() / 2];
+        Ok(TestSet { items, renderer, grid: config.grid, substeps })
+    }
+
     /// Scores of what a net makes of the words of each picture.
     pub fn scores(&self, net: &Net, inertia: bool) -> Result<Vec<Scores>, EvaluateError> {
         self.scores_of(inertia, |i, item| {
-            Ok(net.tell(&item.held.words, item.scene, i as u64)?.on(self.grid, self.grid))
+            // the same places on the net's own grid
+            let place = |i: usize| ((i * (GRID - 1)) as f64 / (self.grid - 1) as f64).round() as usize;
+            let pin = |p: &usize| place(p / self.grid) * GRID + place(p % self.grid);
+            // a row that is pinned whole is pinned whole there
+            let pins: Vec<usize> = match item.pins.len() {
+                n if n == self.grid => (0..GRID).collect(),
+                _ => item.pins.iter().map(pin).collect(),
+            };
+            Ok(net.tell(&item.held.words, &pins, i as u64)?.on(self.grid, self.grid))
         })
     }
 
@@ -134,7 +178,7 @@ impl TestSet {
                 density_kg_m2: f64::from(item.held.fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(self.substeps)),
                 inertia_radius_m: if inertia { f64::from(INERTIA_RADIUS) } else { 0.0 },
-                ..SceneDef::hung(&springs, &item.scene.pins(g, g))
+                ..SceneDef::hung(&springs, &item.pins)
             };
             let mut cloth = cloth::Scene::new(&springs, def).map_err(EvaluateError::part)?;
             let start = item.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
@@ -166,6 +210,18 @@ mod tests {
             let seen: Vec<Fabric> = (0..5000).map(|i| fabric::sample(seed, i).0).collect();
             assert!(all.iter().all(|h| !seen.contains(&h.fabric)));
         }
+    }
+
+    #[test]
+    fn pictures_of_a_data_set_need_the_data() {
+        let home = tempfile::tempdir().unwrap();
+        let load = |grid| {
+            let config = TrainConfig { grid, ..TrainConfig::quick() };
+            let error = TestSet::load(home.path(), &config, Arc::new(renderer(&config).unwrap()), 4).err();
+            error.expect("no data").to_string()
+        };
+        assert!(load(8).contains("16 x 16"));
+        assert!(load(16).contains("data.json"));
     }
 
     #[test]

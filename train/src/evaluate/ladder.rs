@@ -43,7 +43,7 @@ pub fn rungs(steps: usize, quick: bool) -> Vec<Rung> {
         prior: 0.0,
         shape: 0.0,
         steps: StageSteps { matching: 0, positions: 0, adversarial: steps },
-        report_every: steps.div_ceil(4).max(1),
+        report_every: steps.div_ceil(2).max(1),
         ..ours.clone()
     };
     let mut rungs = vec![Rung { name: "adversarial", config: bare }];

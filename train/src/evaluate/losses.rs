@@ -15,9 +15,6 @@ const SEEDS: u64 = 3;
 /// Steps of such a net in a minute of one core.
 const STEPS_PER_MINUTE: f64 = 60.0;
 
-/// Fabrics of the test pictures, each in two scenes.
-const FABRICS: usize = 16;
-
 /// A net.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -51,7 +48,8 @@ pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
     let quick = bench.quick;
     let steps = ladder::steps(bench.minutes, STEPS_PER_MINUTE, quick);
     let rungs = rungs(steps, quick);
-    let made_with: Vec<TrainConfig> = rungs.iter().map(|r| r.config.clone()).collect();
+    // the other rungs follow from their names
+    let made_with = (rungs[0].config.clone(), bench.data_set.is_some());
     // the nets of a seed together: they share a training set
     let jobs: Vec<(u64, usize)> =
         (1..=if quick { 1 } else { SEEDS }).flat_map(|seed| (0..rungs.len()).map(move |r| (seed, r))).collect();
@@ -63,7 +61,7 @@ pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
         |bench, (seed, r)| {
             let config = TrainConfig { seed: *seed, ..rungs[*r].config.clone() };
             let net = bench.net(&config, &format!("{}, seed {seed}", rungs[*r].name))?;
-            let test = bench.test(&config, if quick { 1 } else { FABRICS })?;
+            let test = bench.test(&config)?;
             Ok(Row {
                 rung: rungs[*r].name.into(),
                 seed: *seed,
@@ -106,8 +104,9 @@ pub fn text(rows: &[&Row]) -> String {
     let mut lines: Vec<Vec<String>> =
         summaries(rows).iter().map(|s| line(&s.rung, &s.scores, s.nmse_deviation_of_pictures)).collect();
     if let Some(row) = rows.first() {
-        let same = SetScores::of(&[row.uniform.mean()]);
-        lines.push(line("uniform at the budget", &same, row.uniform.nmse.deviation));
+        let (u, pictures) = (row.uniform.mean(), row.uniform.nmse.deviation);
+        let cells = [number(u.nmse, 4), number(pictures, 4), number(u.ssim, 4), number(u.psnr_db, 2)];
+        lines.push([vec!["uniform at the budget".to_string()], cells.to_vec()].concat());
     }
     table(&["losses", "NMSE", "of pictures", "SSIM", "PSNR dB"], &lines)
 }

@@ -7,7 +7,6 @@ use burn::Tensor;
 use burn::module::Module;
 use burn::tensor::{Device, TensorData};
 use taut::{field, noise};
-use taut_lab::scene::Scene;
 
 use super::EvaluateError;
 use crate::export::{self, ExportMeta, TOKENS};
@@ -64,8 +63,9 @@ impl Net {
         Ok(Net { generator, words, codings: Coding::of(&meta) })
     }
 
-    /// What it tells of a description in a scene; another seed is another piece of the fabric.
-    pub fn tell(&self, description: &str, scene: Scene, seed: u64) -> Result<Told, EvaluateError> {
+    /// What it tells of a description; `pins` are particles of its own 32 x 32 grid, another seed is another piece of the
+    /// fabric.
+    pub fn tell(&self, description: &str, pins: &[usize], seed: u64) -> Result<Told, EvaluateError> {
         let look = |w: &str| self.words.index(w);
         let mut indices: Vec<usize> = tokenize(description).iter().flat_map(|w| resolve(w, &look).0).collect();
         indices.truncate(TOKENS);
@@ -82,7 +82,7 @@ impl Net {
             Tensor::<2>::from_data(TensorData::new(v, [1, n]), &device)
         };
         let z = (0..NOISE as u32).map(|i| noise::gaussian(seed, i)).collect();
-        let pins = row(pin_map(&scene.pins(GRID, GRID))).reshape([1, 1, GRID, GRID]);
+        let pins = row(pin_map(pins)).reshape([1, 1, GRID, GRID]);
         let out = self.generator.forward(row(sum), row(z), pins);
         let read = |data: TensorData| data.try_into_vec::<f32>().map_err(|e| EvaluateError::Part(format!("{e:?}")));
         let decode = |t: f32, coding: &Coding| {
@@ -102,12 +102,13 @@ impl Net {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use taut_lab::scene::Scene;
 
     #[test]
     fn the_file_that_ships_tells_what_words_mean() {
         let net = Net::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/generator.onnx")).unwrap();
         let warp = |words: &str| {
-            let told = net.tell(words, Scene::Hang2, 3).unwrap();
+            let told = net.tell(words, &Scene::Hang2.pins(GRID, GRID), 3).unwrap();
             let mut k = told.on(16, 20);
             assert_eq!(k.len(), 4 * 320);
             k.truncate(320);
@@ -118,9 +119,9 @@ mod tests {
         assert!((1500.0..2600.0).contains(&denim) && (250.0..900.0).contains(&jersey), "{denim} {jersey}");
         assert!(soft.iter().zip(&stiff).all(|(soft, stiff)| soft > stiff), "{soft:?} {stiff:?}");
         // its own size is what it says
-        let told = net.tell("denim", Scene::Edge, 0).unwrap();
+        let told = net.tell("denim", &[], 0).unwrap();
         assert_eq!(told.on(GRID, GRID), told.field);
-        assert!(net.tell("qqq", Scene::Edge, 0).is_err());
+        assert!(net.tell("qqq", &[], 0).is_err());
         assert!(Net::load(Path::new("none.onnx")).is_err());
     }
 }

@@ -17,6 +17,7 @@ use super::table::{number, table};
 use super::{Bench, EvaluateError};
 use crate::gan::{StageSteps, TrainConfig};
 use crate::image::{RenderConfig, Renderer};
+use crate::nets::GRID;
 
 /// Particles of a side, and substeps of a frame of 60 Hz.
 const SIDE: usize = 32;
@@ -68,7 +69,7 @@ pub fn paper(steps: usize, quick: bool) -> TrainConfig {
         evaluation_fabrics: small.evaluation_fabrics,
         learning_rate: small.learning_rate,
         steps: StageSteps { matching: 0, positions: 0, adversarial: steps },
-        report_every: steps.div_ceil(4).max(1),
+        report_every: steps.div_ceil(2).max(1),
         ..TrainConfig::paper()
     }
 }
@@ -123,14 +124,15 @@ fn choices(
     [paper, ours]: &[Net; 2],
 ) -> Result<(Vec<Choice>, Vec<Outcome>), EvaluateError> {
     let case = case(scene, fabric, side, SUBSTEPS);
-    let told = ours.tell(words, scene, 0)?;
+    let pins = scene.pins(GRID, GRID);
+    let told = ours.tell(words, &pins, 0)?;
     let field = told.on(side, side);
     let tethered = Model { limits: Limits::Tethers(0.0), ..Setting::Uniform.into() };
     let models: [(&str, Model); 9] = [
         ("reference", Setting::Reference(fabric.clone()).into()),
         ("data driven", Setting::DataDriven(fitted(fabric, side)?).into()),
         ("analytic (Van Gelder)", Setting::DataDriven(van_gelder(fabric)).into()),
-        ("the paper's GAN", Setting::GeneratedAlone(paper.tell(words, scene, 0)?.on(side, side)).into()),
+        ("the paper's GAN", Setting::GeneratedAlone(paper.tell(words, &pins, 0)?.on(side, side)).into()),
         ("our GAN", Setting::Generated(field.clone()).into()),
         ("our GAN, its limits", Model::limited(Setting::Generated(field), told.limits)),
         ("uniform at the budget", Setting::Uniform.into()),

@@ -11,6 +11,7 @@ use super::net::Net;
 use super::shuffle::derangement;
 use super::table::{number, table};
 use super::{Bench, EvaluateError};
+use crate::nets::GRID;
 
 /// How many fabrics.
 const FABRICS: usize = 6;
@@ -119,8 +120,9 @@ fn measure(job: &Job, net: &Net) -> Result<Row, EvaluateError> {
     };
     let truth = run(MESH, &Setting::Reference(fabric.clone()).into())?;
     let reference = Reference::of_grid(&mesh, stage, &truth.positions, MESH, MESH);
-    let told = net.tell(&job.held.words, scene, 0)?;
-    let wrong = net.tell(&job.heard, scene, 0)?;
+    let pins = scene.pins(GRID, GRID);
+    let told = net.tell(&job.held.words, &pins, 0)?;
+    let wrong = net.tell(&job.heard, &pins, 0)?;
     let field = told.on(job.side, job.side);
     let mut models = vec![
         ("generated".to_string(), Setting::Generated(field.clone()).into()),

@@ -47,6 +47,9 @@ pub fn losses(log: &Path) -> Result<Chart, TrainError> {
             chart = chart.with(name, Mark::Points, points);
         }
     }
+    // room for the legend
+    let last = chart.series.iter().flat_map(|s| &s.points).map(|p| p[0]).fold(1.0, f64::max);
+    chart.x.range = Some([0.0, 1.5 * last]);
     if !scores.is_empty() {
         chart = chart.with("NMSE, evaluation set", Mark::Line, scores);
     }

@@ -62,15 +62,18 @@ pub fn set_up(
     seed: u64,
 ) -> Result<Cloth, ReferenceError> {
     let sheet = sheet(scene, side)?;
+    let x = x.unwrap_or_else(|| start(scene, &sheet, seed));
+    let pins = pins(scene, &sheet, side);
+    Cloth::new(&sheet, material, surroundings(scene), x, &pins)
+}
+
+/// What acts on the cloth of a scene.
+pub fn surroundings(scene: Scene) -> Surroundings {
     let size = if scene == Scene::Cusick { 2.0 * DISC_M } else { 1.0 };
-    let solid = scene.solid(size, size).map(Into::into);
-    let around = Surroundings {
-        solid,
+    Surroundings {
+        solid: scene.solid(size, size).map(Into::into),
         thickness_m: if scene == Scene::Drape { THICKNESS_M } else { 0.0 },
         friction: FRICTION,
         ..Surroundings::default()
-    };
-    let x = x.unwrap_or_else(|| start(scene, &sheet, seed));
-    let pins = pins(scene, &sheet, side);
-    Cloth::new(&sheet, material, around, x, &pins)
+    }
 }
