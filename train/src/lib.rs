@@ -7,6 +7,7 @@ pub mod export;
 pub mod gan;
 pub mod image;
 pub mod nets;
+pub mod own;
 pub mod reference;
 mod sparse;
 pub mod words;

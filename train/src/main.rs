@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use taut_train::{data, evaluate, gan, reference, words};
+use taut_train::{data, evaluate, gan, own, reference, words};
 
 /// Trains the generator of taut: words in, a stiffness field out.
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ enum Command {
     Evaluate(evaluate::EvaluateArgs),
     /// Pictures of cloth to learn from and to judge by: 7338 of 64 x 64
     Data(data::DataArgs),
+    /// The constants of your own fabric from its tension tests, for a configuration of `run`
+    Fabric(own::FabricArgs),
     /// The continuum cloth that stands in for ARCSim, beside its runs where there are some
     Reference(reference::command::ReferenceArgs),
     /// Word vectors
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
             evaluate::run(&args).map_err(|e| (e.to_string(), matches!(e, evaluate::EvaluateError::Interrupted)))
         }
         Command::Data(args) => data::run(&args).map_err(|e| (e.to_string(), matches!(e, data::DataError::Interrupted))),
+        Command::Fabric(args) => own::run(&args).map_err(|e| (e.to_string(), false)),
         Command::Reference(args) => reference::command::run(&args)
             .map_err(|e| (e.to_string(), matches!(e, reference::command::CommandError::Interrupted))),
         Command::Words(command) => words::command::run(&command).map_err(|e| (e.to_string(), false)),

@@ -3,8 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use taut_train::data::Scene;
 use taut_train::export::{ExportMeta, export};
-use taut_train::gan::{Checkpoint, Dataset, Stage, StageSteps, TrainConfig, TrainError, Trainer};
+use taut_train::gan::{
+    AdversarialLoss, Checkpoint, Dataset, Reference, Stage, StageSteps, TrainConfig, TrainError, Trainer,
+};
 use taut_train::image::{RenderConfig, Renderer};
 use taut_train::words::WordTable;
 
@@ -84,5 +87,45 @@ fn bad_configurations_are_named() {
     assert!(name(TrainConfig { batch: 1, ..ok.clone() }).contains("batch"));
     assert!(name(TrainConfig { learning_rate: f64::NAN, ..ok.clone() }).contains("learning_rate"));
     assert!(name(TrainConfig { substeps: vec![], ..ok.clone() }).contains("substeps"));
-    assert!(name(TrainConfig { grid: 1, ..ok }).contains("grid"));
+    assert!(name(TrainConfig { grid: 1, ..ok.clone() }).contains("grid"));
+    let scenes = |reference, scenes: &[Scene]| TrainConfig { reference, scenes: scenes.to_vec(), ..ok.clone() };
+    for bad in [&[][..], &[Scene::Edge, Scene::Edge], &[Scene::Pins], &[Scene::Drape], &[Scene::Hang1]] {
+        assert!(name(scenes(Reference::Core, bad)).contains("scenes"));
+    }
+    assert!(scenes(Reference::Continuum, &[Scene::Pins, Scene::Hang1]).check().is_ok());
+    let labels = |labels| TrainConfig { labels, ..ok.clone() };
+    assert!(labels([1.0, -1.0, 0.0]).check().is_ok());
+    for bad in [[1.0, 1.0, 1.0], [1.0, 0.0, 1.5], [f64::NAN, 0.0, 0.0], [1.0, f64::INFINITY, 1.0]] {
+        assert!(name(labels(bad)).contains("labels"), "{bad:?}");
+    }
+}
+
+/// The continuum cloth in every scene, the held-out fabrics, and the other losses of the paper.
+#[test]
+fn every_switch_trains() {
+    for (adversarial_loss, labels) in
+        [(AdversarialLoss::CrossEntropy, [1.0, 0.0, 1.0]), (AdversarialLoss::LeastSquares, [1.0, -1.0, 0.0])]
+    {
+        let config = TrainConfig {
+            reference: Reference::Continuum,
+            scenes: vec![Scene::Hang2, Scene::Edge, Scene::Pins, Scene::Hang1],
+            held_out: true,
+            adversarial_loss,
+            labels,
+            fabrics: 1,
+            evaluation_fabrics: 1,
+            steps: StageSteps { matching: 1, positions: 1, adversarial: 1 },
+            ..TrainConfig::quick()
+        };
+        let mut run = trainer(&config);
+        let first = bytes(&run);
+        advance(&mut run, 3);
+        assert!(bytes(&run) != first);
+        let score = run.evaluate(None).expect("a score");
+        assert_eq!(score.by_scene.len(), 4, "{score:?}");
+        let flat = |name: &str| score.by_scene[name];
+        assert!(flat("hang2") < 0.1 && flat("edge") < 0.1 && flat("pins") < 0.1, "{score:?}");
+        let mean = score.by_scene.values().sum::<f64>() / 4.0;
+        assert!((score.nmse - mean).abs() < 1e-12);
+    }
 }

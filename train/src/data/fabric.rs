@@ -26,7 +26,13 @@ fn secants(fabric: &Fabric) -> [f64; 3] {
 /// A fabric near a kind with a description that fits it: that of the lab, and then another piece of it. Pieces differ as the
 /// measured fabrics do, a tenth as far: what is denser also bends harder, and so on.
 pub fn sample(seed: u64, index: u32) -> (Fabric, String) {
-    let (mut fabric, words) = lab::sample(seed, index);
+    let (fabric, words) = lab::sample(seed, index);
+    (piece(&fabric, seed, index), words)
+}
+
+/// Another piece of a fabric, drawn by (seed, index).
+pub fn piece(fabric: &Fabric, seed: u64, index: u32) -> Fabric {
+    let mut fabric = fabric.clone();
     let draws: [f64; TRAITS] =
         std::array::from_fn(|i| f64::from(noise::gaussian(seed ^ 0x70_6965_6365, index.wrapping_mul(8) + i as u32)));
     let root = correlated();
@@ -43,7 +49,7 @@ pub fn sample(seed: u64, index: u32) -> (Fabric, String) {
     fabric.stiffness = [rest(vv, 0.5 * anisotropy), rest(uu, -0.5 * anisotropy), diagonal, bend].map(|k| k as f32);
     fabric.density_kg_m2 *= density.exp() as f32;
     fabric.hinge_rigidity_n_m *= rigidity.exp() as f32;
-    (fabric, words)
+    fabric
 }
 
 /// Covariance of the traits of the measured fabrics.

@@ -14,7 +14,7 @@ mod store;
 mod tests;
 
 pub use command::{DataArgs, Shard, run};
-pub use fabric::{material, sample};
+pub use fabric::{material, piece, sample};
 pub use make::settled;
 pub use plan::{Plan, Split, Trajectory};
 pub use scene::{Scene, View};

@@ -12,7 +12,7 @@ use taut_lab::ledger::Ledger;
 use super::held::{SCENES, TestSet};
 use super::net::Net;
 use super::{EvaluateError, Shard};
-use crate::gan::{Checkpoint, Dataset, StageSteps, TrainConfig, bar, renderer, train_in};
+use crate::gan::{AdversarialLoss, Checkpoint, Dataset, StageSteps, TrainConfig, bar, renderer, train_in};
 use crate::words::WordTable;
 
 /// What an evaluation is made with.
@@ -176,6 +176,7 @@ impl<'a> Bench<'a> {
 fn source(config: &TrainConfig) -> Result<String, EvaluateError> {
     let like = TrainConfig {
         conditional: false,
+        adversarial_loss: AdversarialLoss::LeastSquares,
         beta: 0.0,
         paired: 0.0,
         prior: 0.0,

@@ -1,6 +1,6 @@
 //! Fig. 8's ladder: configurations that differ from the one before by one term each.
 
-use crate::gan::{StageSteps, TrainConfig};
+use crate::gan::{AdversarialLoss, StageSteps, TrainConfig};
 
 /// What a rung is, and what it adds to the one below.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub fn steps(minutes: f64, rate: f64, quick: bool) -> usize {
     if quick { 2 } else { (minutes * rate).round().max(1.0) as usize }
 }
 
-/// The rungs from the game alone upwards, each trained for `steps` of the game and nothing before it.
+/// The rungs from the game alone upwards, the first with cross entropy and the others with least squares, each trained for `steps` of the game and nothing before it.
 pub fn rungs(steps: usize, quick: bool) -> Vec<Rung> {
     let ours = small(quick);
     let bare = TrainConfig {
@@ -46,9 +46,11 @@ pub fn rungs(steps: usize, quick: bool) -> Vec<Rung> {
         report_every: steps.div_ceil(2).max(1),
         ..ours.clone()
     };
-    let mut rungs = vec![Rung { name: "adversarial", config: bare }];
+    let entropy = TrainConfig { adversarial_loss: AdversarialLoss::CrossEntropy, ..bare };
+    let mut rungs = vec![Rung { name: "cross entropy", config: entropy }];
     type Add = fn(&mut TrainConfig, &TrainConfig);
-    let adds: [(&'static str, Add); 5] = [
+    let adds: [(&'static str, Add); 6] = [
+        ("least squares", |c, ours| c.adversarial_loss = ours.adversarial_loss),
         ("+ L2", |c, ours| c.beta = ours.beta),
         ("+ words seen", |c, ours| c.conditional = ours.conditional),
         ("+ paired pictures", |c, ours| c.paired = ours.paired),
@@ -85,7 +87,7 @@ mod tests {
     fn every_rung_differs_from_the_one_below_by_one_term() {
         for quick in [false, true] {
             let rungs = rungs(100, quick);
-            let expected = ["beta", "conditional", "paired", "prior", "shape"];
+            let expected = ["adversarial_loss", "beta", "conditional", "paired", "prior", "shape"];
             assert_eq!(rungs.len(), 1 + expected.len());
             for (pair, expected) in rungs.windows(2).zip(expected) {
                 assert_eq!(differences(&pair[0].config, &pair[1].config), [expected]);

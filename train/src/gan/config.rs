@@ -1,13 +1,25 @@
 use serde::{Deserialize, Serialize};
 
-use super::{Stage, TrainError};
+use super::{AdversarialLoss, Stage, TrainError};
+use crate::data::Scene;
 use crate::export::ExportMeta;
 use crate::image::Channel;
 use crate::nets::GeneratorConfig;
+use crate::own::OwnFabric;
 
 /// Stiffness of warp, weft, shear and bend where one matrix stands for all: the paper has one number for every spring of a
 /// particle. Bend springs have as much as the budget leaves them.
 pub const ONE_MATRIX: [f64; 4] = [1.0, 1.0, 1.0, taut::BEND_SHARE as f64];
+
+/// Which cloth is real.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// The engine itself at the physical stiffness, with as many substeps as that needs.
+    Core,
+    /// The continuum cloth of [`crate::reference`].
+    Continuum,
+}
 
 /// Steps of each stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,7 +74,16 @@ pub struct TrainConfig {
     pub picture: Vec<Channel>,
     /// Particles along each side of the cloth in training.
     pub grid: usize,
-    /// Fabrics of the training set; each hangs in two scenes.
+    /// The cloth that is learned from.
+    pub reference: Reference,
+    /// Scenes that each fabric hangs in. One whose folds bifurcate takes part with its pictures only. The core has hang2, edge
+    /// and hang1, the continuum cloth pins too.
+    pub scenes: Vec<Scene>,
+    /// Whether fabrics that `taut-train data` keeps for evaluation and test are kept out of training ([`crate::data::Split`]).
+    pub held_out: bool,
+    /// Fabrics of one's own (`taut-train fabric`): a quarter of what the first stage hears, and in the training set of the others.
+    pub own: Vec<OwnFabric>,
+    /// Fabrics of the training set; each hangs in every scene.
     pub fabrics: usize,
     /// Fabrics of the evaluation set, drawn apart.
     pub evaluation_fabrics: usize,
@@ -82,6 +103,11 @@ pub struct TrainConfig {
     pub epoch_pictures: usize,
     /// The step size is halved after this many epochs; the paper's is 3.
     pub halve_every_epochs: usize,
+    /// The adversarial loss; the paper's is least squares.
+    pub adversarial_loss: AdversarialLoss,
+    /// Codes (a, b, c) of least squares (eq. 10 and 11): of real pictures, of generated ones, and what the generator wants them to
+    /// be taken for. The paper's eq. 15 and 16 have (1, 0, 1); the condition of eq. 14, a - c = 1 and a - b = 2, has (1, -1, 0).
+    pub labels: [f64; 3],
     /// Weight of the adversarial loss (alpha of eq. 21).
     pub alpha: f64,
     /// Weight of the L2 loss (beta of eq. 21).
@@ -127,6 +153,10 @@ impl Default for TrainConfig {
             conditional: true,
             picture: vec![Channel::Checker, Channel::Silhouette],
             grid: 16,
+            reference: Reference::Core,
+            scenes: vec![Scene::Hang2, Scene::Edge],
+            held_out: false,
+            own: vec![],
             fabrics: 72,
             evaluation_fabrics: 8,
             batch: 32,
@@ -137,6 +167,8 @@ impl Default for TrainConfig {
             beta1: 0.9,
             epoch_pictures: 4615,
             halve_every_epochs: 3,
+            adversarial_loss: AdversarialLoss::LeastSquares,
+            labels: [1.0, 0.0, 1.0],
             alpha: 1.5,
             beta: 0.1,
             phi: 1e-3,
@@ -202,6 +234,23 @@ impl TrainConfig {
         must((4..=64).contains(&self.grid), "grid must be 4 to 64")?;
         must((1..=4096).contains(&self.fabrics), "fabrics must be 1 to 4096")?;
         must((1..=1024).contains(&self.evaluation_fabrics), "evaluation_fabrics must be 1 to 1024")?;
+        let twice = self.scenes.iter().enumerate().any(|(i, s)| self.scenes[..i].contains(s));
+        must(!self.scenes.is_empty() && !twice, "scenes must name one scene or more, none twice")?;
+        for scene in &self.scenes {
+            must(*scene != Scene::Drape, "scenes: the cloth of training has no ball, so drape is not one of them")?;
+            let known = self.reference == Reference::Continuum || *scene != Scene::Pins;
+            must(known, "scenes: pins is for the reference `continuum`")?;
+        }
+        for fabric in &self.own {
+            fabric.check().map_err(|e| TrainError::Config(format!("own: {e}")))?;
+        }
+        let flat = self.scenes.iter().any(|s| !s.folds());
+        must(flat || self.steps.positions == 0, "scenes: positions need one of hang2, edge, pins")?;
+        let folds = self.scenes.iter().any(|s| s.folds());
+        must(!folds || self.shape == 0.0, "scenes: shape needs scenes whose folds do not bifurcate")?;
+        let [a, b, c] = self.labels;
+        must(self.labels.iter().all(|l| l.abs() <= 10.0) && a != b, "labels must be -10 to 10, and a not b")?;
+        must(a.min(b) <= c && c <= a.max(b), "labels: c must lie between a and b, where ratings lie")?;
         must((2..=1024).contains(&self.batch), "batch must be 2 to 1024: batch normalisation needs two")?;
         must((1..=10_000_000).contains(&self.steps.total()), "steps must be 1 to 10 million in all")?;
         for (rate, name) in [(self.matching_rate, "matching_rate"), (self.learning_rate, "learning_rate")] {

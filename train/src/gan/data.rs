@@ -5,18 +5,16 @@ use std::sync::Arc;
 use taut::{Budget, noise};
 use taut_lab::compare::{self, Case, Setting};
 use taut_lab::fabric::{self, Fabric, KINDS};
-use taut_lab::scene::Scene;
 
-use super::{TrainConfig, TrainError};
+use super::{Reference, TrainConfig, TrainError};
 use crate::cloth::{self, SceneDef, Springs};
+use crate::data::{Scene, Split, piece, settled};
 use crate::export::ExportMeta;
 use crate::image::Renderer;
 use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, NOISE};
+use crate::own::OwnFabric;
 use crate::words::WordTable;
 use crate::words::tokens::{resolve, tokenize};
-
-/// Scenes whose folds do not bifurcate, so that positions can be compared.
-pub const SCENES: [Scene; 2] = [Scene::Hang2, Scene::Edge];
 
 /// Seconds after which the reference cloth is at rest (damping 2 1/s).
 const REFERENCE_SECONDS: f32 = 8.0;
@@ -24,6 +22,12 @@ const REFERENCE_SECONDS: f32 = 8.0;
 /// Seeds of the training set, the evaluation set and the stream of the first stage differ by these.
 const EVALUATION: u64 = 0x6576_616c;
 const STREAM: u64 = 0x7374_7265;
+/// Seeds of the pins of a fabric, and of what is drawn again.
+const PINS: u64 = 0x7069_6e73;
+const AGAIN: u64 = 0x6167_6169;
+
+/// One of so many draws of the stream is a fabric of one's own, where there are some.
+const OWN_EVERY: u32 = 4;
 
 /// Least share of shear in the mean structural stiffness. A game's step cuts every family alike, and then a weak shear takes
 /// the strain. More than this costs the warp its budget, and knits their own stretch (table in docs/training.md).
@@ -71,6 +75,8 @@ pub struct Example {
     pub fabric: Fabric,
     /// How it hangs.
     pub scene: Scene,
+    /// What the pins of [`Scene::Pins`] follow from.
+    pub draw: u64,
     /// The reference at rest: positions of the training grid, `[particle][axis]`, m.
     pub reference: Vec<f32>,
     /// Its picture, `[channel][64][64]`.
@@ -88,6 +94,8 @@ pub struct Dataset {
     pub evaluation: Vec<Example>,
     words: WordTable,
     seed: u64,
+    held_out: bool,
+    own: Vec<OwnFabric>,
     variation: f64,
     codings: ([Coding; CHANNELS], [Coding; FABRIC]),
 }
@@ -101,25 +109,40 @@ impl Dataset {
         renderer: &Renderer,
         mut progress: impl FnMut(f32),
     ) -> Result<Dataset, TrainError> {
-        let total = (config.fabrics + config.evaluation_fabrics) * SCENES.len();
+        let words = weighted(words);
+        if let Some(own) = config.own.iter().find(|own| known(&words, &own.words).is_empty()) {
+            return Err(TrainError::Config(format!("own: no word of `{}` is in the word table", own.words)));
+        }
+        let total = (config.fabrics + config.own.len() + config.evaluation_fabrics) * config.scenes.len();
         let mut done = 0;
-        let mut set = |seed: u64, count: usize| -> Result<Vec<Example>, TrainError> {
+        let mut set = |seed: u64, count: usize, split: Split| -> Result<Vec<Example>, TrainError> {
             let mut out = Vec::new();
-            for i in 0..count {
-                let (fabric, words) = fabric::sample(seed, i as u32);
-                for scene in SCENES {
-                    out.push(example(config, &fabric, &words, scene, renderer)?);
+            let own: &[OwnFabric] = if split == Split::Training { &config.own } else { &[] };
+            for i in 0..count + own.len() {
+                let (fabric, words) = match i.checked_sub(count).and_then(|i| own.get(i)) {
+                    Some(own) => (own.fabric(), own.words.clone()),
+                    None => draw(seed, i as u32, config.held_out.then_some(split)),
+                };
+                for scene in &config.scenes {
+                    let pins = noise::bits(seed ^ PINS, i as u32);
+                    // a cloth that does not come to rest tells nothing of rest
+                    out.extend(example(config, &fabric, &words, *scene, pins, renderer)?);
                     done += 1;
                     progress(done as f32 / total as f32);
                 }
             }
-            Ok(out)
+            match out.is_empty() {
+                true => Err(TrainError::Part("no reference cloth came to rest".into())),
+                false => Ok(out),
+            }
         };
         Ok(Dataset {
-            training: set(config.seed, config.fabrics)?,
-            evaluation: set(config.seed ^ EVALUATION, config.evaluation_fabrics)?,
-            words: weighted(words),
+            training: set(config.seed, config.fabrics, Split::Training)?,
+            evaluation: set(config.seed ^ EVALUATION, config.evaluation_fabrics, Split::Evaluation)?,
+            words,
+            own: config.own.clone(),
             seed: config.seed,
+            held_out: config.held_out,
             variation: config.variation,
             codings: Coding::of(meta),
         })
@@ -137,7 +160,11 @@ impl Dataset {
 
     /// A fabric and its words for the first stage: number `index` of an endless stream.
     pub fn streamed(&self, index: u32) -> (Fabric, String) {
-        fabric::sample(self.seed ^ STREAM, index)
+        let seed = self.seed ^ STREAM;
+        match self.own.get((index / OWN_EVERY) as usize % self.own.len().max(1)) {
+            Some(own) if index.is_multiple_of(OWN_EVERY) => (piece(&own.fabric(), seed, index), own.words.clone()),
+            _ => draw(seed, index, self.held_out.then_some(Split::Training)),
+        }
     }
 
     /// The description vector of some words: the sum of their vectors, [1024].
@@ -153,10 +180,7 @@ impl Dataset {
 
     /// The known words of a text, at most 16, as the runtime takes them.
     pub fn indices(&self, words: &str) -> Vec<usize> {
-        let look = |w: &str| self.words.index(w);
-        let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
-        out.truncate(crate::export::TOKENS);
-        out
+        known(&self.words, words)
     }
 
     /// The noise of a draw, [128].
@@ -191,6 +215,14 @@ impl Dataset {
     }
 }
 
+/// The known words of a text, at most 16.
+fn known(table: &WordTable, words: &str) -> Vec<usize> {
+    let look = |w: &str| table.index(w);
+    let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
+    out.truncate(crate::export::TOKENS);
+    out
+}
+
 /// A smooth pattern of deviation about 1 over the field from the first numbers of the noise.
 fn pattern(noise: &[f32], row: usize, column: usize) -> f64 {
     use std::f64::consts::PI;
@@ -222,14 +254,32 @@ pub(crate) fn weighted(mut words: WordTable) -> WordTable {
     words
 }
 
+/// Fabric number `index`, of one split where one is asked for.
+fn draw(seed: u64, index: u32, split: Option<Split>) -> (Fabric, String) {
+    let mut drawn = fabric::sample(seed, index);
+    let mut again = 0;
+    while split.is_some_and(|s| Split::of(&drawn.0, &drawn.1) != s) {
+        again += 1;
+        drawn = fabric::sample(seed ^ noise::bits(AGAIN, again), index);
+    }
+    drawn
+}
+
 fn example(
     config: &TrainConfig,
     fabric: &Fabric,
     words: &str,
     scene: Scene,
+    draw: u64,
     renderer: &Renderer,
-) -> Result<Example, TrainError> {
-    let reference = reference(config.grid, fabric, scene)?;
+) -> Result<Option<Example>, TrainError> {
+    let reference = match config.reference {
+        Reference::Core => reference(config.grid, fabric, scene)?,
+        Reference::Continuum => match settled(fabric, scene, config.grid, draw).map_err(TrainError::part)? {
+            (positions, true) => positions,
+            (_, false) => return Ok(None),
+        },
+    };
     let springs = Arc::new(Springs::new(config.grid, config.grid, 1.0, 1.0).map_err(TrainError::part)?);
     let start: Vec<[f64; 3]> = reference.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
     let cloths = config
@@ -240,7 +290,7 @@ fn example(
                 density_kg_m2: f64::from(fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(*substeps)),
                 inertia_radius_m: if config.inertia { f64::from(compare::INERTIA_RADIUS) } else { 0.0 },
-                ..SceneDef::hung(&springs, &scene.pins(config.grid, config.grid))
+                ..SceneDef::hung(&springs, &scene.pins(config.grid, draw))
             };
             let mut cloth = cloth::Scene::new(&springs, def)?;
             cloth.set_start(Some(start.clone()))?;
@@ -248,15 +298,15 @@ fn example(
         })
         .collect::<Result<Vec<_>, cloth::ClothError>>()
         .map_err(TrainError::part)?;
-    let picture = renderer.render(&reference).map_err(TrainError::part)?;
-    Ok(Example { words: words.to_string(), fabric: fabric.clone(), scene, reference, picture, cloths })
+    let picture = renderer.render(&scene.view().of(&reference)).map_err(TrainError::part)?;
+    Ok(Some(Example { words: words.to_string(), fabric: fabric.clone(), scene, draw, reference, picture, cloths }))
 }
 
 /// The reference cloth: core itself at the physical stiffness, with as many substeps as the budget needs to cut nothing,
 /// stepped to rest: the same that the program shows as the reference.
 fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainError> {
     let case = Case {
-        scene,
+        scene: scene.lab(),
         rows: n as u32,
         columns: n as u32,
         size_m: [1.0, 1.0],
@@ -275,6 +325,17 @@ fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainE
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_held_out_is_not_drawn() {
+        let mut passed = 0;
+        for i in 0..200 {
+            let (fabric, words) = draw(1, i, Some(Split::Training));
+            assert_eq!(Split::of(&fabric, &words), Split::Training);
+            passed += usize::from(draw(1, i, None) == (fabric, words));
+        }
+        assert!((90..160).contains(&passed), "{passed} of 200 are drawn at once");
+    }
 
     #[test]
     fn the_table_of_words_knows_every_word_of_the_samples() {

@@ -21,13 +21,13 @@ mod program;
 mod trainer;
 
 pub use checkpoint::Checkpoint;
-pub use config::{ONE_MATRIX, StageSteps, TrainConfig};
+pub use config::{ONE_MATRIX, Reference, StageSteps, TrainConfig};
 pub(crate) use data::weighted;
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
-pub use losses::{Ratings, discriminator_loss, generator_loss, weight_penalty};
+pub use losses::{AdversarialLoss, Adversary, Ratings, weight_penalty};
 pub use program::{RunArgs, renderer, run, train_in};
 pub(crate) use program::{bar, write_whole};
-pub use trainer::{Stage, Trainer, pin_map};
+pub use trainer::{Score, Stage, Trainer, pin_map};
 
 use std::fmt;
 

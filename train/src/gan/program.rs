@@ -137,9 +137,9 @@ fn train(
             }
             let score = trainer.evaluate(Some(&sheet))?;
             let field = trainer.field_error()?;
-            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score, "evaluation_ln_k": field }))?;
-            if candidate && best.is_none_or(|(b, _)| score < b) {
-                *best = Some((score, trainer.step));
+            log.line(&serde_json::json!({ "step": trainer.step, "evaluation_nmse": score.nmse, "evaluation_nmse_by_scene": score.by_scene, "evaluation_ln_k": field }))?;
+            if candidate && best.is_none_or(|(b, _)| score.nmse < b) {
+                *best = Some((score.nmse, trainer.step));
                 trainer.save_generator(&out.join("best.bpk"))?;
             }
         }

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use serde::Serialize;
 use taut::noise;
 
 use super::gradient::gradient_norm;
-use super::{Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
-use super::{discriminator_loss, generator_loss, head, weight_penalty};
+use super::{Adversary, Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
+use super::{head, weight_penalty};
 use crate::cloth::{self, equilibrium};
 use crate::image::{
     AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
@@ -62,6 +63,15 @@ pub struct Losses {
     pub gradient_norm: f64,
     /// Length of the discriminator's gradient.
     pub discriminator_gradient_norm: f64,
+}
+
+/// How near the generated pictures of the evaluation set are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Mean NMSE.
+    pub nmse: f64,
+    /// That of each scene.
+    pub by_scene: BTreeMap<&'static str, f64>,
 }
 
 /// A training run in memory.
@@ -253,10 +263,10 @@ impl Trainer {
         Told { field, fabric, roughness, loss }
     }
 
-    /// Examples of this step, the cloth of each at one of the substeps, and the noise's numbers.
-    fn examples(&self) -> (Vec<&Example>, Vec<cloth::Scene>) {
-        let chosen: Vec<&Example> =
-            (0..self.config.batch).map(|i| &self.data.training[self.draw(2, i, self.data.training.len())]).collect();
+    /// Examples of this step, of scenes that fold too or not; the cloth of each at one of the substeps, and the noise's numbers.
+    fn examples(&self, folds: bool) -> (Vec<&Example>, Vec<cloth::Scene>) {
+        let of: Vec<&Example> = self.data.training.iter().filter(|e| folds || !e.scene.folds()).collect();
+        let chosen: Vec<&Example> = (0..self.config.batch).map(|i| of[self.draw(2, i, of.len())]).collect();
         let cloths =
             chosen.iter().enumerate().map(|(i, e)| e.cloths[self.draw(3, i, e.cloths.len())].clone()).collect();
         (chosen, cloths)
@@ -295,7 +305,7 @@ impl Trainer {
     }
 
     fn match_positions(&mut self) -> Result<Losses, TrainError> {
-        let (chosen, mut cloths) = self.examples();
+        let (chosen, mut cloths) = self.examples(false);
         let first = (self.step * self.config.batch) as u64;
         let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
@@ -317,7 +327,7 @@ impl Trainer {
     }
 
     fn play(&mut self) -> Result<Losses, TrainError> {
-        let (chosen, mut cloths) = self.examples();
+        let (chosen, mut cloths) = self.examples(true);
         let b = self.config.batch;
         let first = (self.step * b) as u64;
         let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
@@ -325,7 +335,7 @@ impl Trainer {
         let out = self.generator.forward(batch.words.clone(), batch.noise, batch.pins);
         let x = self.hang(out.field.clone(), &mut cloths)?;
         let [position, stretch] = self.shape(x.clone(), &chosen);
-        let fake = render_images(&self.renderer, x).map_err(TrainError::part)?;
+        let fake = render_images(&self.renderer, seen(x, &chosen)).map_err(TrainError::part)?;
 
         // the same augmentations and noise for both sides, drawn anew for each
         let config = AugmentConfig { noise: self.config.picture_noise, ..AugmentConfig::default() };
@@ -343,12 +353,13 @@ impl Trainer {
             real: self.discriminator.forward(real, batch.words.clone()),
             generated: self.discriminator.forward(shown.clone().detach(), batch.words.clone()),
         };
-        let judged = discriminator_loss(&ratings);
+        let adversary = Adversary { loss: self.config.adversarial_loss, labels: self.config.labels };
+        let judged = adversary.discriminator(&ratings);
         let gradients = GradientsParams::from_grads(judged.backward(), &self.discriminator);
         let discriminator_gradient_norm = gradient_norm(&self.discriminator, &gradients);
         self.discriminator = self.discriminator_optimizer.step(self.rate(), self.discriminator.clone(), gradients);
 
-        let adversarial = generator_loss(self.discriminator.forward(shown, batch.words));
+        let adversarial = adversary.generator(self.discriminator.forward(shown, batch.words));
         let samples = self.data.training.len();
         let weights = weight_penalty(self.generator.squared_weights(), self.config.phi, samples);
         let picture = (fake - plain).square().mean();
@@ -410,7 +421,7 @@ impl Trainer {
 
     /// Score of the evaluation set: mean NMSE of the generated pictures against the references (paper, VI.B, 9), with the
     /// noise at zero; writes a sheet of real and generated pictures if a path is given.
-    pub fn evaluate(&self, sheet: Option<&Path>) -> Result<f64, TrainError> {
+    pub fn evaluate(&self, sheet: Option<&Path>) -> Result<Score, TrainError> {
         let device = Device::flex();
         let chosen: Vec<&Example> = self.data.evaluation.iter().collect();
         let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
@@ -419,20 +430,22 @@ impl Trainer {
         // the middle of the substeps: a game's step
         let mut cloths: Vec<_> = chosen.iter().map(|e| e.cloths[e.cloths.len() / 2].clone()).collect();
         let x = self.hang(out.field, &mut cloths)?;
-        let generated = render_images(&self.renderer, x).map_err(TrainError::part)?;
+        let generated = render_images(&self.renderer, seen(x, &chosen)).map_err(TrainError::part)?;
         let generated: Vec<f32> =
             generated.into_data().try_into_vec().map_err(|e| TrainError::Part(format!("{e:?}")))?;
         let real: Vec<f32> = chosen.iter().flat_map(|e| e.picture.iter().copied()).collect();
         let len = self.renderer.image_len();
-        let mut sum = 0.0;
-        for (real, generated) in real.chunks_exact(len).zip(generated.chunks_exact(len)) {
-            sum += nmse(real, generated).map_err(TrainError::part)?;
+        let mut by_scene: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
+        for ((real, generated), e) in real.chunks_exact(len).zip(generated.chunks_exact(len)).zip(&chosen) {
+            by_scene.entry(e.scene.name()).or_default().push(nmse(real, generated).map_err(TrainError::part)?);
         }
         if let Some(path) = sheet {
             let layout = SheetLayout { channels: self.config.picture.len(), pairs_per_row: 4, zoom: 2 };
             write_sheet(path, &real, &generated, layout).map_err(TrainError::part)?;
         }
-        Ok(sum / chosen.len() as f64)
+        let mean = by_scene.values().flatten().sum::<f64>() / chosen.len() as f64;
+        let of = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
+        Ok(Score { nmse: mean, by_scene: by_scene.iter().map(|(name, all)| (*name, of(all))).collect() })
     }
 
     /// Writes everything that a resumed run needs.
@@ -511,7 +524,16 @@ fn scalar(t: &Tensor<1>) -> f64 {
 
 fn pins_of(e: &Example) -> Vec<usize> {
     // at the net's own resolution
-    e.scene.pins(GRID, GRID)
+    e.scene.pins(GRID, e.draw)
+}
+
+/// Positions [batch, particles, 3] as the camera has them.
+fn seen(x: Tensor<3>, examples: &[&Example]) -> Tensor<3> {
+    let views: Vec<_> = examples.iter().map(|e| e.scene.view()).collect();
+    let (device, b) = (x.device(), views.len());
+    let scales = TensorData::new(views.iter().map(|v| v.scale).collect::<Vec<f32>>(), [b, 1, 1]);
+    let shifts = TensorData::new(views.iter().flat_map(|v| v.shift_m).collect::<Vec<f32>>(), [b, 1, 3]);
+    x * Tensor::from_data(scales, &device) + Tensor::from_data(shifts, &device)
 }
 
 /// A few pins somewhere, none, or a whole row, for the first stage: what the words mean does not depend on them.
