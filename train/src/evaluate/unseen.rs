@@ -22,8 +22,9 @@ const SLACKS: [f32; 2] = [0.02, 0.05];
 /// Where the cloth is compared: particles of a side, substeps of a frame. The first is the scene's own.
 const PLACES: [(usize, u32); 6] = [(33, 16), (16, 16), (64, 16), (33, 8), (33, 32), (33, 48)];
 
-/// Vertices of a side of the mesh on which both cloths are measured.
+/// Vertices of a side of the mesh on which both cloths are measured, and particles of the reference; and in a quick run.
 const MESH: usize = 33;
+const QUICK_MESH: usize = 13;
 
 /// Seed of the order in which words are handed on.
 const SHUFFLE: u64 = 5;
@@ -107,19 +108,19 @@ pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
         &made_with,
         &jobs(bench.quick),
         |j| format!("{}, {}, {} x {}", j.held.words, j.scene, j.side, j.substeps),
-        |_, job| measure(job, &net),
+        |bench, job| measure(job, &net, if bench.quick { QUICK_MESH } else { MESH }),
     )
 }
 
-fn measure(job: &Job, net: &Net) -> Result<Row, EvaluateError> {
+fn measure(job: &Job, net: &Net, vertices: usize) -> Result<Row, EvaluateError> {
     let (fabric, scene) = (&job.held.fabric, job.scene);
     let stage = Stage::named(scene.name()).map_err(EvaluateError::part)?;
-    let mesh = Mesh::square(MESH);
+    let mesh = Mesh::square(vertices);
     let run = |side: usize, model: &Model| {
         compare::run_model(&case(scene, fabric, side, job.substeps), model, |_, _| ()).map_err(EvaluateError::part)
     };
-    let truth = run(MESH, &Setting::Reference(fabric.clone()).into())?;
-    let reference = Reference::of_grid(&mesh, stage, &truth.positions, MESH, MESH);
+    let truth = run(vertices, &Setting::Reference(fabric.clone()).into())?;
+    let reference = Reference::of_grid(&mesh, stage, &truth.positions, vertices, vertices);
     let pins = scene.pins(GRID, GRID);
     let told = net.tell(&job.held.words, &pins, 0)?;
     let wrong = net.tell(&job.heard, &pins, 0)?;
