@@ -6,7 +6,7 @@ use std::sync::Arc;
 use burn::Tensor;
 use burn::tensor::{Device, TensorData};
 use taut::Budget;
-use taut_lab::compare::{self, Case, INERTIA_RADIUS, Setting};
+use taut_lab::compare::{self, Case, Setting};
 use taut_lab::fabric::{self, Fabric, KINDS};
 use taut_lab::scene::Scene;
 
@@ -177,9 +177,10 @@ impl TestSet {
             let def = SceneDef {
                 density_kg_m2: f64::from(item.held.fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(self.substeps)),
-                inertia_radius_m: if inertia { f64::from(INERTIA_RADIUS) } else { 0.0 },
                 ..SceneDef::hung(&springs, &item.pins)
             };
+            let inertia_radius_m = if inertia { def.inertia_radius_m } else { 0.0 };
+            let def = SceneDef { inertia_radius_m, ..def };
             let mut cloth = cloth::Scene::new(&springs, def).map_err(EvaluateError::part)?;
             let start = item.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
             cloth.set_start(Some(start)).map_err(EvaluateError::part)?;

@@ -289,9 +289,10 @@ fn example(
             let def = SceneDef {
                 density_kg_m2: f64::from(fabric.density_kg_m2),
                 dt_s: 1.0 / (60.0 * f64::from(*substeps)),
-                inertia_radius_m: if config.inertia { f64::from(compare::INERTIA_RADIUS) } else { 0.0 },
                 ..SceneDef::hung(&springs, &scene.pins(config.grid, draw))
             };
+            let inertia_radius_m = if config.inertia { def.inertia_radius_m } else { 0.0 };
+            let def = SceneDef { inertia_radius_m, ..def };
             let mut cloth = cloth::Scene::new(&springs, def)?;
             cloth.set_start(Some(start.clone()))?;
             Ok(cloth)

@@ -334,7 +334,8 @@ impl Trainer {
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
         let out = self.generator.forward(batch.words.clone(), batch.noise, batch.pins);
         let x = self.hang(out.field.clone(), &mut cloths)?;
-        let [position, stretch] = self.shape(x.clone(), &chosen);
+        // the distances mean nothing where folds bifurcate
+        let shape = (self.config.shape > 0.0).then(|| self.shape(x.clone(), &chosen));
         let fake = render_images(&self.renderer, seen(x, &chosen)).map_err(TrainError::part)?;
 
         // the same augmentations and noise for both sides, drawn anew for each
@@ -368,17 +369,18 @@ impl Trainer {
             + weights.clone() * self.config.beta
             + picture.clone() * self.config.paired
             + told.loss.clone() * self.config.prior;
-        if self.config.shape > 0.0 {
+        if let Some([position, stretch]) = &shape {
             let [p, s] = [self.config.position_weight, self.config.stretch_weight].map(|w| w * self.config.shape);
             loss = loss + position.clone() * p + stretch.clone() * s;
         }
+        let [position, stretch] = shape.map_or([0.0; 2], |both| both.map(|x| scalar(&x)));
         let gradient_norm = self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
             gradient_norm,
             discriminator_gradient_norm,
-            position_mm2: 1e6 * scalar(&position),
-            stretch_pct: 100.0 * scalar(&stretch).sqrt(),
+            position_mm2: 1e6 * position,
+            stretch_pct: 100.0 * stretch.sqrt(),
             discriminator: scalar(&judged),
             adversarial: scalar(&adversarial),
             weights: scalar(&weights),
