@@ -62,6 +62,9 @@ pub fn paper(steps: usize, quick: bool) -> TrainConfig {
     let small = small(quick);
     TrainConfig {
         grid: small.grid,
+        reference: small.reference,
+        scenes: small.scenes,
+        held_out: small.held_out,
         generator_width: small.generator_width,
         discriminator_width: small.discriminator_width,
         batch: small.batch,
