@@ -69,6 +69,8 @@ pub enum Setting {
     RatiosInertia,
     /// A generated field `[4][rows][columns]` in N/m with the inertia field.
     Generated(Vec<f32>),
+    /// The same field without the inertia field.
+    GeneratedAlone(Vec<f32>),
     /// Four numbers in N/m (warp, weft, shear, bend) that were fitted to strains ([`crate::front::fit`]).
     DataDriven([f32; 4]),
 }
@@ -85,6 +87,7 @@ impl Setting {
             Setting::AnalyticInertia(_) => "analytic_inertia",
             Setting::RatiosInertia => "ratios_inertia",
             Setting::Generated(_) => "generated",
+            Setting::GeneratedAlone(_) => "generated_alone",
             Setting::DataDriven(_) => "data_driven",
         }
     }
@@ -98,6 +101,7 @@ impl Setting {
             | Setting::Random
             | Setting::Uniform
             | Setting::Analytic(_)
+            | Setting::GeneratedAlone(_)
             | Setting::DataDriven(_) => false,
         }
     }
@@ -115,7 +119,7 @@ impl Setting {
                 (0..4 * n).map(|i| noise::uniform(case.seed, (i % n) as u32)).collect()
             }
             Setting::RatiosInertia => constant(RATIOS.map(|r| r * BEYOND)),
-            Setting::Generated(field) => field.clone(),
+            Setting::Generated(field) | Setting::GeneratedAlone(field) => field.clone(),
         }
     }
 }

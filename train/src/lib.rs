@@ -2,6 +2,7 @@
 
 pub mod cloth;
 pub mod data;
+pub mod evaluate;
 pub mod export;
 pub mod gan;
 pub mod image;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use taut_train::{data, gan, own, reference, words};
+use taut_train::{data, evaluate, gan, own, reference, words};
 
 /// Trains the generator of taut: words in, a stiffness field out.
 #[derive(Debug, Parser)]
@@ -17,6 +17,8 @@ struct Program {
 enum Command {
     /// From nothing to a generator file; goes on where an interrupted run of the same folder ended
     Run(gan::RunArgs),
+    /// The figures of the paper's evaluation, and fabrics that no net has seen
+    Evaluate(evaluate::EvaluateArgs),
     /// Pictures of cloth to learn from and to judge by: 7338 of 64 x 64
     Data(data::DataArgs),
     /// The constants of your own fabric from its tension tests, for a configuration of `run`
@@ -32,6 +34,9 @@ fn main() -> ExitCode {
     let result = match Program::parse().command {
         Command::Run(args) => {
             gan::run(&args).map_err(|e| (e.to_string(), matches!(e, gan::TrainError::Interrupted { .. })))
+        }
+        Command::Evaluate(args) => {
+            evaluate::run(&args).map_err(|e| (e.to_string(), matches!(e, evaluate::EvaluateError::Interrupted)))
         }
         Command::Data(args) => data::run(&args).map_err(|e| (e.to_string(), matches!(e, data::DataError::Interrupted))),
         Command::Fabric(args) => own::run(&args).map_err(|e| (e.to_string(), false)),

@@ -5,7 +5,8 @@ use half::f16;
 use prost::Message;
 use taut_train::export::proto::{ModelProto, data_type};
 use taut_train::export::{
-    ExportError, ExportMeta, MAX_FILE_BYTES, MAX_VOCABULARY, WordTable, export, fixture, round_to_f16, run_rounded,
+    ExportError, ExportMeta, MAX_FILE_BYTES, MAX_VOCABULARY, WordTable, export, fixture, import, round_to_f16,
+    run_rounded,
 };
 use taut_train::nets::Generator;
 
@@ -34,6 +35,25 @@ fn rounding_gives_f16_numbers_and_leaves_the_original_alone() {
     assert_eq!(means, mean(&rounded), "the normalisation stays as it is");
     let twice = round_to_f16(&rounded);
     assert_eq!((kernel(&twice), mean(&twice)), (kernel(&rounded), mean(&rounded)));
+}
+
+#[test]
+fn what_is_read_back_is_what_was_written() {
+    let (g, words) = small();
+    let meta = ExportMeta { model_name: "small".into(), ..Default::default() };
+    let bytes = export(&g, &words, &meta).expect("export");
+    let (again, its_words, its_meta) = import(&bytes).expect("its own file");
+    assert_eq!((its_words.tokens, &its_meta), (words.tokens.clone(), &meta));
+    let words = WordTable { vectors: its_words.vectors, ..words };
+    assert_eq!(export(&again, &words, &meta).expect("export"), bytes);
+
+    let refused = |bytes: &[u8]| import(bytes).expect_err("refused").to_string();
+    assert!(refused(b"no file").contains("not a generator file"));
+    let mut model = ModelProto::decode(bytes.as_slice()).expect("decodes");
+    model.graph.as_mut().expect("graph").initializer.retain(|t| t.name != "third.norm.mean");
+    assert!(refused(&model.encode_to_vec()).contains("third.norm.mean"));
+    model.metadata_props.clear();
+    assert!(refused(&model.encode_to_vec()).contains("taut.model_name"));
 }
 
 #[test]

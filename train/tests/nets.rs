@@ -31,7 +31,7 @@ fn judge(d: &Discriminator, channels: usize, batch: usize, seed: u64, device: &D
 fn the_generator_gives_a_field_and_a_fabric_in_tanh_range() {
     let device = Device::flex();
     for width in [1, 4, 16] {
-        let g = GeneratorConfig { width, levels: true }.init(3, &device).expect("width");
+        let g = GeneratorConfig { width, ..GeneratorConfig::default() }.init(3, &device).expect("width");
         let out = generate(&g, 3, 1, &device);
         assert_eq!((out.field.dims(), out.fabric.dims()), ([3, 4, 32, 32], [3, 5]));
         for v in host(out.field).into_iter().chain(host(out.fabric)) {
@@ -77,7 +77,7 @@ fn the_fabric_hears_the_words_and_not_the_noise() {
 #[test]
 fn the_fabric_hears_the_sum_of_the_words_too_and_the_pattern_only_where_it_points() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 4, levels: false }.init(5, &device).expect("width");
+    let g = GeneratorConfig { width: 4, levels: false, ..GeneratorConfig::default() }.init(5, &device).expect("width");
     let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
     let pins = random([1, 1, 32, 32], 2, &device).abs();
     let once = g.forward(words.clone(), noise.clone(), pins.clone());
@@ -96,7 +96,7 @@ fn the_fabric_hears_the_sum_of_the_words_too_and_the_pattern_only_where_it_point
 #[test]
 fn the_level_of_the_field_hears_the_words_and_their_sum() {
     let device = Device::flex();
-    let with = GeneratorConfig { width: 4, levels: true }.init(5, &device).expect("width");
+    let with = GeneratorConfig { width: 4, ..GeneratorConfig::default() }.init(5, &device).expect("width");
     let without = without_levels(&with);
     let (words, noise) = (random([1, 1024], 1, &device), random([1, 128], 3, &device));
     let pins = random([1, 1, 32, 32], 2, &device).abs();
@@ -116,10 +116,37 @@ fn without_levels(g: &Generator) -> Generator {
 }
 
 #[test]
+fn one_matrix_stands_for_all_and_the_whole_network_answers_the_same() {
+    let device = Device::flex();
+    let inputs = |seed| {
+        let pins = random([2, 1, 32, 32], seed + 2, &device).abs();
+        (random([2, 1024], seed, &device), random([2, 128], seed + 1, &device), pins)
+    };
+    for (one_matrix, pins) in [(true, false), (true, true), (false, false)] {
+        let config = GeneratorConfig { width: 4, levels: false, one_matrix, pins };
+        let g = config.init(7, &device).expect("width");
+        let answer = |g: &Generator, distance: Tensor<4>| {
+            let (words, noise, _) = inputs(3);
+            host(g.forward(words, noise, distance).field)
+        };
+        let (_, _, distance) = inputs(3);
+        let field = answer(&g, distance.clone());
+        let same = |i: usize| field[i] == field[i % 1024 + i / 4096 * 4096];
+        assert_eq!((0..field.len()).all(same), one_matrix, "{config:?}");
+        assert_eq!(answer(&g, distance.clone() * 0.5) == field, !pins, "{config:?}");
+        let whole = g.whole();
+        assert_eq!(whole.sixth.deconvolution.weight.dims(), [5, 4, 3, 3]);
+        for (a, b) in answer(&whole, distance).iter().zip(&field) {
+            assert!((a - b).abs() < 1e-6, "{config:?}: {a} {b}");
+        }
+    }
+}
+
+#[test]
 fn a_seed_is_a_network() {
     let device = Device::flex();
     let outputs = |seed| {
-        let g = GeneratorConfig { width: 4, levels: true }.init(seed, &device).expect("width");
+        let g = GeneratorConfig { width: 4, ..GeneratorConfig::default() }.init(seed, &device).expect("width");
         let d = DiscriminatorConfig { width: 4, ..Default::default() }.init(seed, &device).expect("width");
         (host(generate(&g, 2, 8, &device).field), host(judge(&d, 1, 2, 8, &device)))
     };
@@ -164,7 +191,7 @@ fn only_a_conditional_discriminator_hears_the_words_and_it_weighs_them_against_t
 #[test]
 fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, ..GeneratorConfig::default() }.init(2, &device).expect("width");
     let statistics = |g: &Generator| {
         let g = g.valid();
         (host(g.second.norm.running_mean.value()), host(g.fifth.norm.running_var.value()))
@@ -200,7 +227,7 @@ fn batch_norm_follows_the_batches_in_training_and_rests_in_inference() {
 #[test]
 fn every_weight_of_both_networks_gets_a_gradient() {
     let device = Device::flex().autodiff();
-    let g = GeneratorConfig { width: 4, levels: true }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 4, ..GeneratorConfig::default() }.init(2, &device).expect("width");
     let out = generate(&g, 4, 1, &device);
     let loss = out.field.square().mean() + out.fabric.square().mean() + g.squared_weights().mul_scalar(1e-4);
     let grads = loss.backward();
@@ -230,7 +257,7 @@ fn every_weight_of_both_networks_gets_a_gradient() {
 #[test]
 fn the_sum_of_squares_counts_kernels_and_matrices() {
     let device = Device::flex();
-    let g = GeneratorConfig { width: 1, levels: true }.init(2, &device).expect("width");
+    let g = GeneratorConfig { width: 1, ..GeneratorConfig::default() }.init(2, &device).expect("width");
     let mut expected = 0.0f64;
     let mut add = |v: Vec<f32>| expected += v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
     add(host(g.first.weight.val()));

@@ -200,9 +200,18 @@ impl Reference {
             return Err(AgainstError::Unpinned(path.into(), stage.scene));
         }
         let last = &all.values.as_chunks::<3>().0[(frames - 1) * n..];
-        let x: Vec<[f32; 3]> = last.iter().map(|p| stage.place(*p)).collect();
+        Ok(Reference::new(mesh, stage, pinned, last.iter().map(|p| stage.place(*p)).collect()))
+    }
+
+    /// A cloth of taut's as the reference: a grid in taut's axes at the vertices of a mesh, whose pinned vertices must be
+    /// there.
+    pub fn of_grid(mesh: &Mesh, stage: Stage, positions: &[[f32; 3]], rows: usize, columns: usize) -> Reference {
+        Reference::new(mesh, stage, stage.pinned(mesh), mesh.resampled(positions, rows, columns))
+    }
+
+    fn new(mesh: &Mesh, stage: Stage, pinned: Vec<usize>, x: Vec<[f32; 3]>) -> Reference {
         let (strains, picture) = (mesh.strains(&x, &pinned), stage.view.picture(mesh, &x));
-        Ok(Reference { stage, mesh: mesh.clone(), pinned, x, strains, picture })
+        Reference { stage, mesh: mesh.clone(), pinned, x, strains, picture }
     }
 
     /// Its vertices in taut's axes, in m.
@@ -286,6 +295,9 @@ mod tests {
                 Some(d) => assert!(d < 1e-3 && stage.distance, "{name}: {d}"),
                 None => assert!(!stage.distance),
             }
+            let own = Reference::of_grid(&mesh, stage, &x, rows, columns).compare(&x, rows, columns, true);
+            assert_eq!((own.silhouette_nmse, own.ssim), (0.0, 1.0), "{name}");
+            assert!(own.ex_pin_pct.u.taut == own.ex_pin_pct.u.reference && own.distance_pct.is_none_or(|d| d == 0.0));
             // mirrored along v it is another cloth
             let mirrored: Vec<[f32; 3]> = x.iter().map(|[x, y, z]| [*x, -1.0 - y, *z]).collect();
             if stage.distance {

@@ -26,6 +26,8 @@ pub enum ExportError {
     },
     /// The inputs of a parity run do not fit each other or the word table; the text says how.
     Input(String),
+    /// A file that cannot be read back; the text says why.
+    File(String),
     /// The file would have this many bytes, [`MAX_FILE_BYTES`](super::MAX_FILE_BYTES) or more.
     TooLarge(usize),
 }
@@ -41,6 +43,7 @@ impl fmt::Display for ExportError {
             Self::NotFinite { tensor } => write!(f, "tensor {tensor} holds a number that is not finite"),
             Self::Tensor { tensor } => write!(f, "tensor {tensor} has an unexpected shape or could not be read"),
             Self::Input(what) => write!(f, "inputs of the generator: {what}"),
+            Self::File(what) => write!(f, "not a generator file of ours: {what}"),
             Self::TooLarge(bytes) => {
                 write!(f, "the file would have {bytes} bytes, the limit is {}", super::MAX_FILE_BYTES)
             }

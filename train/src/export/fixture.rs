@@ -25,7 +25,7 @@ pub fn word_table(words: usize, seed: u64) -> WordTable {
 /// [`NetError::Width`].
 pub fn seasoned_generator(width: usize, seed: u64, batches: usize) -> Result<Generator, NetError> {
     let device = Device::flex().autodiff();
-    let generator = GeneratorConfig { width, levels: true }.init(seed, &device)?;
+    let generator = GeneratorConfig { width, ..GeneratorConfig::default() }.init(seed, &device)?;
     let mut s = SplitMix64::new(!seed);
     for _ in 0..batches {
         let tensor = |values: Vec<f32>, columns| Tensor::<2>::from_data(TensorData::new(values, [8, columns]), &device);

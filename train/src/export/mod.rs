@@ -3,7 +3,7 @@
 //! The file holds the network of [`crate::nets::generator`] with the word table in front of it, weights and words as f16
 //! behind a Cast to f32, and describes itself by metadata: vocabulary, channels, ranges, sizes, training digest.
 //! [`export`] writes it, [`round_to_f16`] gives the network with exactly the numbers of the file, and [`run_rounded`]
-//! runs that network on the file's own inputs, so that other runtimes can be compared with it.
+//! runs that network on the file's own inputs, so that other runtimes can be compared with it. [`import`] reads a file back.
 
 pub mod error;
 pub mod fixture;
@@ -11,6 +11,7 @@ pub mod half_precision;
 pub mod meta;
 pub mod parity;
 pub mod proto;
+pub mod reader;
 pub mod words;
 pub mod writer;
 
@@ -20,6 +21,7 @@ pub use error::ExportError;
 pub use half_precision::round_to_f16;
 pub use meta::ExportMeta;
 pub use parity::{ParityInput, ParitySample, run_rounded};
+pub use reader::import;
 pub use words::WordTable;
 pub use writer::export;
 

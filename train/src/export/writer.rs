@@ -14,7 +14,6 @@
 //! variance may be too small for f16, and an error of the mean is multiplied by its ratio to the deviation. They are
 //! fewer than 1 in 1000 of the numbers.
 
-use burn::module::Module;
 use prost::Message;
 
 use super::graph::GraphBuilder;
@@ -43,8 +42,8 @@ pub fn export(generator: &Generator, words: &WordTable, meta: &ExportMeta) -> Re
         .into_iter()
         .map(|(key, value)| StringStringEntryProto { key: key.into(), value })
         .collect();
-    // `valid` also brings the running statistics up to the last training step.
-    let graph = network(&generator.valid(), words)?;
+    // the copy for inference also brings the running statistics up to the last training step
+    let graph = network(&generator.whole(), words)?;
     let model = ModelProto {
         ir_version: IR_VERSION,
         producer_name: "taut".into(),

@@ -2,8 +2,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{AdversarialLoss, Stage, TrainError};
 use crate::data::Scene;
+use crate::export::ExportMeta;
 use crate::image::Channel;
+use crate::nets::GeneratorConfig;
 use crate::own::OwnFabric;
+
+/// Stiffness of warp, weft, shear and bend where one matrix stands for all: the paper has one number for every spring of a
+/// particle. Bend springs have as much as the budget leaves them.
+pub const ONE_MATRIX: [f64; 4] = [1.0, 1.0, 1.0, taut::BEND_SHARE as f64];
 
 /// Which cloth is real.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,6 +74,12 @@ pub struct TrainConfig {
     pub generator_width: usize,
     /// Whether the words set the level of each family directly (off in the paper).
     pub levels: bool,
+    /// Whether one matrix stands for all families, in the ratios [`ONE_MATRIX`], as in the paper; goes without `levels`.
+    pub one_matrix: bool,
+    /// Whether the generator hears the distance to the pins (off in the paper).
+    pub pins: bool,
+    /// Whether the cloth has the inertia field, which the budget follows (off in the paper).
+    pub inertia: bool,
     /// Base width of the discriminator.
     pub discriminator_width: usize,
     /// Whether the discriminator sees the description (off in the paper).
@@ -128,13 +140,15 @@ pub struct TrainConfig {
     pub position_weight: f64,
     /// Weight of the stretch in the second stage.
     pub stretch_weight: f64,
+    /// Share of those two weights that acts in the game; 0 in the paper.
+    pub shape: f64,
     /// How much the noise varies ln(K) over a piece of fabric.
     pub variation: f64,
     /// White Gaussian noise on the real pictures as a share of the range, at least and at most: the paper's 1 to 5 %.
     pub picture_noise: [f64; 2],
     /// Substeps of a 60 Hz frame that the cloth is trained at; the last does not clamp most fabrics.
     pub substeps: Vec<u32>,
-    /// Largest norm of the generator's gradient.
+    /// Largest norm of the gradient of each tensor of the generator; 0 turns it off, as in the paper.
     pub gradient_clip: f32,
     /// Steps between evaluations, checkpoints and picture sheets.
     pub report_every: usize,
@@ -146,6 +160,9 @@ impl Default for TrainConfig {
             seed: 1,
             generator_width: 16,
             levels: true,
+            one_matrix: false,
+            pins: true,
+            inertia: true,
             discriminator_width: 16,
             conditional: true,
             picture: vec![Channel::Checker, Channel::Silhouette],
@@ -174,6 +191,7 @@ impl Default for TrainConfig {
             smoothness: 0.5,
             position_weight: 1e3,
             stretch_weight: 1e3,
+            shape: 0.0,
             variation: 0.12,
             picture_noise: [0.01, 0.05],
             substeps: vec![8, 16, 48],
@@ -199,14 +217,22 @@ impl TrainConfig {
         }
     }
 
-    /// The paper's own recipe: a generator without levels, a discriminator that does not see the words, no paired term, no prior, no regression.
+    /// The paper's own recipe: one matrix with fixed ratios from words and noise alone, a discriminator that does not see the
+    /// words, one step of the cloth without inertia, the losses of eq. 15 to 21 and nothing beside them: no paired term, no
+    /// prior, no regression, no clipping.
     pub fn paper() -> TrainConfig {
         let ours = TrainConfig::default();
         TrainConfig {
             levels: false,
+            one_matrix: true,
+            pins: false,
+            inertia: false,
             conditional: false,
             paired: 0.0,
             prior: 0.0,
+            smoothness: 0.0,
+            substeps: vec![16],
+            gradient_clip: 0.0,
             steps: StageSteps { matching: 0, positions: 0, adversarial: ours.steps.total() },
             ..ours
         }
@@ -234,6 +260,8 @@ impl TrainConfig {
         }
         let flat = self.scenes.iter().any(|s| !s.folds());
         must(flat || self.steps.positions == 0, "scenes: positions need one of hang2, edge, pins")?;
+        let folds = self.scenes.iter().any(|s| s.folds());
+        must(!folds || self.shape == 0.0, "scenes: shape needs scenes whose folds do not bifurcate")?;
         let [a, b, c] = self.labels;
         must(self.labels.iter().all(|l| l.abs() <= 10.0) && a != b, "labels must be -10 to 10, and a not b")?;
         must(a.min(b) <= c && c <= a.max(b), "labels: c must lie between a and b, where ratings lie")?;
@@ -249,6 +277,7 @@ impl TrainConfig {
             [self.alpha, self.beta, self.phi, self.paired, self.prior].into_iter().all(share)
                 && share(self.position_weight)
                 && share(self.stretch_weight)
+                && share(self.shape)
                 && share(self.smoothness),
             "weights of losses must be 0 to 1e6",
         )?;
@@ -258,8 +287,26 @@ impl TrainConfig {
             "substeps must be a list of numbers from 1 to 1024",
         )?;
         must(!self.picture.is_empty() && self.picture.len() <= 3, "picture must have 1 to 3 channels")?;
-        must(self.gradient_clip > 0.0, "gradient_clip must be above 0")?;
+        must(self.gradient_clip >= 0.0, "gradient_clip must be 0 or more")?;
+        must(!(self.one_matrix && self.levels), "one_matrix goes without levels")?;
         must(self.report_every > 0, "report_every must be above 0")
+    }
+
+    /// The generator.
+    pub fn generator(&self) -> GeneratorConfig {
+        let TrainConfig { generator_width: width, levels, one_matrix, pins, .. } = *self;
+        GeneratorConfig { width, levels, one_matrix, pins }
+    }
+
+    /// What the generator file says of itself. One matrix has the same range for all families but for their ratios, so that
+    /// the same number decodes to stiffnesses in these ratios.
+    pub fn meta(&self) -> Result<ExportMeta, TrainError> {
+        let mut meta = ExportMeta { training_digest: self.digest()?, ..ExportMeta::default() };
+        if self.one_matrix {
+            let [(low, high), ..] = meta.channel_ranges_n_per_m;
+            meta.channel_ranges_n_per_m = ONE_MATRIX.map(|ratio| (ratio * low, ratio * high));
+        }
+        Ok(meta)
     }
 
     /// Digest of the configuration in hexadecimal.
@@ -274,6 +321,21 @@ impl TrainConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_papers_recipe_has_nothing_of_ours() {
+        let p = TrainConfig::paper();
+        assert!(p.check().is_ok());
+        assert!(p.one_matrix && !(p.levels || p.pins || p.inertia || p.conditional));
+        assert_eq!([p.paired, p.prior, p.shape, p.smoothness], [0.0; 4]);
+        assert_eq!((p.steps.matching, p.steps.positions, p.gradient_clip), (0, 0, 0.0));
+        assert_eq!((p.alpha, p.beta, p.learning_rate, p.beta1, p.batch), (1.5, 0.1, 1e-4, 0.9, 32));
+        // one number, four stiffnesses in fixed ratios
+        for (range, ratio) in p.meta().unwrap().channel_ranges_n_per_m.iter().zip(ONE_MATRIX) {
+            assert!((range.0 / (5.0 * ratio) - 1.0).abs() < 1e-12 && (range.1 / (2e4 * ratio) - 1.0).abs() < 1e-12);
+        }
+        assert!(TrainConfig { levels: true, ..p }.check().is_err());
+    }
 
     #[test]
     fn the_last_stage_is_the_last_that_has_steps() {

@@ -86,6 +86,7 @@ pub struct Example {
 }
 
 /// Everything that the stages draw from.
+#[derive(Clone)]
 pub struct Dataset {
     /// Examples of training.
     pub training: Vec<Example>,
@@ -247,7 +248,7 @@ pub fn salience(word: &str) -> f32 {
 }
 
 /// The table with every vector as long as its word is salient.
-fn weighted(mut words: WordTable) -> WordTable {
+pub(crate) fn weighted(mut words: WordTable) -> WordTable {
     let dimensions = words.dimensions();
     for (token, vector) in words.tokens.iter().zip(words.vectors.chunks_exact_mut(dimensions)) {
         let weight = salience(token);
@@ -293,6 +294,8 @@ fn example(
                 dt_s: 1.0 / (60.0 * f64::from(*substeps)),
                 ..SceneDef::hung(&springs, &scene.pins(config.grid, draw))
             };
+            let inertia_radius_m = if config.inertia { def.inertia_radius_m } else { 0.0 };
+            let def = SceneDef { inertia_radius_m, ..def };
             let mut cloth = cloth::Scene::new(&springs, def)?;
             cloth.set_start(Some(start.clone()))?;
             Ok(cloth)

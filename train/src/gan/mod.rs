@@ -13,16 +13,20 @@
 mod checkpoint;
 mod config;
 mod data;
+mod gradient;
 mod head;
 mod losses;
+mod plot;
 mod program;
 mod trainer;
 
 pub use checkpoint::Checkpoint;
-pub use config::{Reference, StageSteps, TrainConfig};
+pub use config::{ONE_MATRIX, Reference, StageSteps, TrainConfig};
+pub(crate) use data::weighted;
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
 pub use losses::{AdversarialLoss, Adversary, Ratings, weight_penalty};
-pub use program::{RunArgs, run};
+pub use program::{RunArgs, renderer, run, train_in};
+pub(crate) use program::{bar, write_whole};
 pub use trainer::{Score, Stage, Trainer, pin_map};
 
 use std::fmt;

@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use taut_lab::plot::Figure;
 
-use super::{Checkpoint, Dataset, TrainConfig, TrainError, Trainer};
-use crate::export::{self, ExportMeta};
+use super::{Checkpoint, Dataset, TrainConfig, TrainError, Trainer, plot};
+use crate::export;
 use crate::image::{RenderConfig, Renderer};
 use crate::words::{WordTable, WordsConfig, train_words};
 
@@ -41,9 +42,6 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     config.check()?;
     let out = args.out.as_path();
     fs::create_dir_all(out).map_err(|e| TrainError::file(out, e))?;
-    let state = Checkpoint::read(out)?;
-    let text = serde_json::to_string_pretty(&config).map_err(TrainError::part)?;
-    write_whole(&out.join("config.json"), text.as_bytes())?;
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = stop.clone();
@@ -51,26 +49,13 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
 
     let words = word_table(args, out)?;
-    let meta =
-        ExportMeta { model_name: "taut generator".into(), training_digest: config.digest()?, ..ExportMeta::default() };
-    let render = RenderConfig { channels: config.picture.clone(), ..RenderConfig::default() };
-    let renderer = Arc::new(Renderer::new(render, config.grid, config.grid).map_err(TrainError::part)?);
+    let meta = config.meta()?;
+    let renderer = Arc::new(renderer(&config)?);
     let bar = bar("reference cloths", 1000);
     let data = Dataset::new(&config, words, &meta, &renderer, |share| bar.set_position((1000.0 * share) as u64))?;
     bar.finish_and_clear();
-    let mut trainer = Trainer::new(&config, data, renderer)?;
-    let mut best = None;
-    if let Some(state) = state {
-        trainer.resume(out, &state)?;
-        best = state.best;
-        eprintln!("going on from step {}", state.step);
-    }
-    train(&config, &mut trainer, &mut best, out, &stop)?;
+    let (trainer, best) = train_in(out, &config, data, renderer, "training", &stop)?;
 
-    let chosen = out.join("best.bpk");
-    if chosen.exists() {
-        trainer.load_generator(&chosen)?;
-    }
     let bytes = export::export(trainer.generator(), trainer.data().words(), &meta).map_err(TrainError::part)?;
     let path = out.join("generator.onnx");
     write_whole(&path, &bytes)?;
@@ -79,8 +64,47 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     let input = export::fixture::input(2, words.tokens.len(), config.seed);
     let sample = export::run_rounded(trainer.generator(), words, &input).map_err(TrainError::part)?;
     write_whole(&out.join("parity.json"), &serde_json::to_vec(&sample).map_err(TrainError::part)?)?;
-    println!("{}: {} bytes, weights of step {}", path.display(), bytes.len(), best.map_or(trainer.step, |b| b.1));
+    let chart = plot::losses(&out.join("log.jsonl"))?;
+    write_whole(&out.join("losses.png"), &chart.png().map_err(TrainError::part)?)?;
+    println!("{}: {} bytes, weights of step {}", path.display(), bytes.len(), best);
     Ok(())
+}
+
+/// The renderer of a configuration.
+pub fn renderer(config: &TrainConfig) -> Result<Renderer, TrainError> {
+    let render = RenderConfig { channels: config.picture.clone(), ..RenderConfig::default() };
+    Renderer::new(render, config.grid, config.grid).map_err(TrainError::part)
+}
+
+/// Trains in a folder, which must exist, or goes on where it ended there. The trainer comes back with the weights that the
+/// evaluation set chose, beside the step that they are of. `name` stands on the progress bar.
+///
+/// # Errors
+/// [`TrainError::Interrupted`] when `stop` was set; the same call goes on from there.
+pub fn train_in(
+    out: &Path,
+    config: &TrainConfig,
+    data: Dataset,
+    renderer: Arc<Renderer>,
+    name: &str,
+    stop: &AtomicBool,
+) -> Result<(Trainer, usize), TrainError> {
+    let state = Checkpoint::read(out)?;
+    let text = serde_json::to_string_pretty(config).map_err(TrainError::part)?;
+    write_whole(&out.join("config.json"), text.as_bytes())?;
+    let mut trainer = Trainer::new(config, data, renderer)?;
+    let mut best = None;
+    if let Some(state) = state {
+        trainer.resume(out, &state)?;
+        best = state.best;
+    }
+    train(config, &mut trainer, &mut best, out, name, stop)?;
+    let chosen = out.join("best.bpk");
+    if chosen.exists() {
+        trainer.load_generator(&chosen)?;
+    }
+    let step = best.map_or(trainer.step, |b| b.1);
+    Ok((trainer, step))
 }
 
 fn train(
@@ -88,11 +112,12 @@ fn train(
     trainer: &mut Trainer,
     best: &mut Option<(f64, usize)>,
     out: &Path,
+    name: &str,
     stop: &AtomicBool,
 ) -> Result<(), TrainError> {
     let total = config.steps.total();
     let mut log = Log::open(&out.join("log.jsonl"), trainer.step)?;
-    let bar = bar("training", total as u64);
+    let bar = bar(name, total as u64);
     bar.set_position(trainer.step as u64);
     while trainer.step < total {
         let stage = trainer.stage();
@@ -193,7 +218,7 @@ impl Log {
     }
 }
 
-fn bar(what: &str, length: u64) -> ProgressBar {
+pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
     let bar = ProgressBar::new(length);
     if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {eta} {msg}") {
         bar.set_style(style.progress_chars("=> "));
@@ -203,7 +228,7 @@ fn bar(what: &str, length: u64) -> ProgressBar {
 }
 
 /// Writes a file whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), TrainError> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), TrainError> {
     let new = path.with_extension("new");
     fs::write(&new, bytes).map_err(|e| TrainError::file(&new, e))?;
     fs::rename(&new, path).map_err(|e| TrainError::file(path, e))

@@ -10,6 +10,7 @@ use burn::tensor::{Device, TensorData};
 use serde::Serialize;
 use taut::noise;
 
+use super::gradient::gradient_norm;
 use super::{Adversary, Checkpoint, Dataset, Example, Ratings, TrainConfig, TrainError};
 use super::{head, weight_penalty};
 use crate::cloth::{self, equilibrium};
@@ -17,8 +18,7 @@ use crate::image::{
     AugmentBatch, AugmentConfig, Renderer, SheetLayout, augment_images, nmse, render_images, write_sheet,
 };
 use crate::nets::{
-    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorConfig,
-    GeneratorOutput, NOISE,
+    CHANNELS, DESCRIPTION, Discriminator, DiscriminatorConfig, FABRIC, GRID, Generator, GeneratorOutput, NOISE,
 };
 
 /// Share of the first weights of the last layer that is left where levels are there from the start.
@@ -59,6 +59,10 @@ pub struct Losses {
     pub stretch_pct: f64,
     /// Pictures: mean squared difference.
     pub picture: f64,
+    /// Length of the generator's gradient before it is clipped.
+    pub gradient_norm: f64,
+    /// Length of the discriminator's gradient.
+    pub discriminator_gradient_norm: f64,
 }
 
 /// How near the generated pictures of the evaluation set are.
@@ -99,9 +103,9 @@ impl Trainer {
         config.check()?;
         let device = Device::flex().autodiff();
         let adam = AdamConfig::new().with_beta_1(config.beta1).with_epsilon(1e-8);
-        let clipped = adam.clone().with_grad_clipping(Some(GradientClippingConfig::Norm(config.gradient_clip)));
-        let generator =
-            GeneratorConfig { width: config.generator_width, levels: config.levels }.init(config.seed, &device);
+        let clip = (config.gradient_clip > 0.0).then_some(GradientClippingConfig::Norm(config.gradient_clip));
+        let clipped = adam.clone().with_grad_clipping(clip);
+        let generator = config.generator().init(config.seed, &device);
         let discriminator = DiscriminatorConfig {
             width: config.discriminator_width,
             picture_channels: config.picture.len(),
@@ -226,9 +230,12 @@ impl Trainer {
         }
     }
 
-    fn update_generator(&mut self, loss: &Tensor<1>) {
+    /// Steps down the loss; the length of its gradient.
+    fn update_generator(&mut self, loss: &Tensor<1>) -> f64 {
         let gradients = GradientsParams::from_grads(loss.backward(), &self.generator);
+        let norm = gradient_norm(&self.generator, &gradients);
         self.generator = self.generator_optimizer.step(self.rate(), self.generator.clone(), gradients);
+        norm
     }
 
     fn match_fields(&mut self) -> Result<Losses, TrainError> {
@@ -240,8 +247,8 @@ impl Trainer {
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
         let out = self.generator.forward(batch.words, batch.noise, batch.pins);
         let told = self.told(out, &batch.field, &batch.fabric);
-        self.update_generator(&told.loss);
-        Ok(Losses { generator: scalar(&told.loss), ..told.losses() })
+        let gradient_norm = self.update_generator(&told.loss);
+        Ok(Losses { generator: scalar(&told.loss), gradient_norm, ..told.losses() })
     }
 
     /// How far what the net tells is from what the words mean: the loss of the first stage, the prior of the others.
@@ -289,24 +296,30 @@ impl Trainer {
         Tensor::from_data(TensorData::new(all, shape), device)
     }
 
+    /// Mean square of the distances in m^2 and of the differences of strains, of shapes against the references.
+    fn shape(&self, x: Tensor<3>, chosen: &[&Example]) -> [Tensor<1>; 2] {
+        let g = self.config.grid;
+        let reference = self.references(chosen, &self.device);
+        let position = (x.clone() - reference.clone()).square().sum_dim(2).mean();
+        [position, (strains(x, g) - strains(reference, g)).square().mean()]
+    }
+
     fn match_positions(&mut self) -> Result<Losses, TrainError> {
         let (chosen, mut cloths) = self.examples(false);
-        let g = self.config.grid;
         let first = (self.step * self.config.batch) as u64;
         let items = chosen.iter().map(|e| (&e.fabric, e.words.as_str(), pins_of(e)));
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
         let out = self.generator.forward(batch.words, batch.noise, batch.pins);
         let x = self.hang(out.field.clone(), &mut cloths)?;
-        let reference = self.references(&chosen, &self.device);
-        let position = (x.clone() - reference.clone()).square().sum_dim(2).mean();
-        let stretch = (strains(x, g) - strains(reference, g)).square().mean();
+        let [position, stretch] = self.shape(x, &chosen);
         let told = self.told(out, &batch.field, &batch.fabric);
         let loss = position.clone() * self.config.position_weight
             + stretch.clone() * self.config.stretch_weight
             + told.loss.clone() * self.config.prior;
-        self.update_generator(&loss);
+        let gradient_norm = self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
+            gradient_norm,
             position_mm2: 1e6 * scalar(&position),
             stretch_pct: 100.0 * scalar(&stretch).sqrt(),
             ..told.losses()
@@ -321,6 +334,8 @@ impl Trainer {
         let batch = self.batch(items, |i| self.data.noise(first + i as u64), &self.device);
         let out = self.generator.forward(batch.words.clone(), batch.noise, batch.pins);
         let x = self.hang(out.field.clone(), &mut cloths)?;
+        // the distances mean nothing where folds bifurcate
+        let shape = (self.config.shape > 0.0).then(|| self.shape(x.clone(), &chosen));
         let fake = render_images(&self.renderer, seen(x, &chosen)).map_err(TrainError::part)?;
 
         // the same augmentations and noise for both sides, drawn anew for each
@@ -342,6 +357,7 @@ impl Trainer {
         let adversary = Adversary { loss: self.config.adversarial_loss, labels: self.config.labels };
         let judged = adversary.discriminator(&ratings);
         let gradients = GradientsParams::from_grads(judged.backward(), &self.discriminator);
+        let discriminator_gradient_norm = gradient_norm(&self.discriminator, &gradients);
         self.discriminator = self.discriminator_optimizer.step(self.rate(), self.discriminator.clone(), gradients);
 
         let adversarial = adversary.generator(self.discriminator.forward(shown, batch.words));
@@ -349,13 +365,22 @@ impl Trainer {
         let weights = weight_penalty(self.generator.squared_weights(), self.config.phi, samples);
         let picture = (fake - plain).square().mean();
         let told = self.told(out, &batch.field, &batch.fabric);
-        let loss = adversarial.clone() * self.config.alpha
+        let mut loss = adversarial.clone() * self.config.alpha
             + weights.clone() * self.config.beta
             + picture.clone() * self.config.paired
             + told.loss.clone() * self.config.prior;
-        self.update_generator(&loss);
+        if let Some([position, stretch]) = &shape {
+            let [p, s] = [self.config.position_weight, self.config.stretch_weight].map(|w| w * self.config.shape);
+            loss = loss + position.clone() * p + stretch.clone() * s;
+        }
+        let [position, stretch] = shape.map_or([0.0; 2], |both| both.map(|x| scalar(&x)));
+        let gradient_norm = self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
+            gradient_norm,
+            discriminator_gradient_norm,
+            position_mm2: 1e6 * position,
+            stretch_pct: 100.0 * stretch.sqrt(),
             discriminator: scalar(&judged),
             adversarial: scalar(&adversarial),
             weights: scalar(&weights),

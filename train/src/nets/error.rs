@@ -11,6 +11,8 @@ pub enum NetError {
     PictureChannels(usize),
     /// A conditional discriminator needs a projection of at least one number.
     Projection(usize),
+    /// Levels tell each channel its own, one matrix is the same for all.
+    OneMatrix,
 }
 
 impl fmt::Display for NetError {
@@ -23,6 +25,7 @@ impl fmt::Display for NetError {
                 "a conditional discriminator cannot project the description to {p} numbers: 1 to {} are possible",
                 super::DESCRIPTION
             ),
+            Self::OneMatrix => f.write_str("levels tell each family its own stiffness, one matrix has none of its own"),
         }
     }
 }

@@ -29,11 +29,16 @@
 //! level of warp and weft out of the words, and get it wrong by half (`docs/training.md`); without
 //! [`GeneratorConfig::levels`] it is the paper's.
 //!
+//! **One matrix**: the paper's generator writes one m x n matrix, which stands for all families in fixed ratios. With
+//! [`GeneratorConfig::one_matrix`] the sixth layer has one channel, which the output repeats; the ratios are those of the
+//! channels' ranges. Without [`GeneratorConfig::pins`] the fifth and sixth do not hear the pins. [`Generator::whole`] is the
+//! same function in the shapes of the file.
+//!
 //! Beside the field stands a second linear head over the words alone, which tells what belongs to the fabric as a whole.
 //! Noise does not reach it: another seed is another piece of the same fabric.
 
 use burn::Tensor;
-use burn::module::Module;
+use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, ConvTranspose2d};
 use burn::nn::{BatchNorm, Linear};
 use burn::tensor::Device;
@@ -50,11 +55,15 @@ pub struct GeneratorConfig {
     pub width: usize,
     /// Whether the words set the level of each channel directly; the paper's generator has no such layer.
     pub levels: bool,
+    /// Whether one matrix stands for all channels, as in the paper. Goes without `levels`, which tell each channel its own.
+    pub one_matrix: bool,
+    /// Whether the distance to the pins is heard; the paper's generator knows none.
+    pub pins: bool,
 }
 
 impl Default for GeneratorConfig {
     fn default() -> Self {
-        Self { width: 16, levels: true }
+        Self { width: 16, levels: true, one_matrix: false, pins: true }
     }
 }
 
@@ -62,12 +71,16 @@ impl GeneratorConfig {
     /// A generator with first weights from `seed`; on an autodiff device it is ready to train.
     ///
     /// # Errors
-    /// [`NetError::Width`].
+    /// [`NetError::Width`], [`NetError::OneMatrix`].
     pub fn init(&self, seed: u64, device: &Device) -> Result<Generator, NetError> {
         let w = self.width;
         if w == 0 || w > MAX_WIDTH {
             return Err(NetError::Width(w));
         }
+        if self.one_matrix && self.levels {
+            return Err(NetError::OneMatrix);
+        }
+        let (raw, channels) = (usize::from(self.pins), if self.one_matrix { 1 } else { CHANNELS });
         let mut b = LayerBuilder::new(seed, device);
         Ok(Generator {
             first: b.deconvolution([DESCRIPTION + NOISE, 8 * w], 5, 2, 1),
@@ -75,8 +88,8 @@ impl GeneratorConfig {
             second: Deconvolution::new(&mut b, 8 * w, 0, 4 * w, 2),
             third: Deconvolution::new(&mut b, 5 * w, 0, 2 * w, 2),
             fourth: Deconvolution::new(&mut b, 3 * w, 0, w, 2),
-            fifth: Deconvolution::new(&mut b, 2 * w, 1, w, 1),
-            sixth: Deconvolution::new(&mut b, w, 1, CHANNELS, 1),
+            fifth: Deconvolution::new(&mut b, 2 * w, raw, w, 1),
+            sixth: Deconvolution::new(&mut b, w, raw, channels, 1),
             fabric: b.linear(HEAD_INPUT, FABRIC),
             level: self.levels.then(|| b.linear(HEAD_INPUT, CHANNELS)),
         })
@@ -102,8 +115,31 @@ impl Deconvolution {
         self.deconvolution.forward(self.norm.forward(x))
     }
 
+    /// With raw channels behind the normalised ones, where the layer has room for them.
     fn forward_with(&self, x: Tensor<4>, raw: Tensor<4>) -> Tensor<4> {
-        self.deconvolution.forward(Tensor::cat(vec![self.norm.forward(x), raw], 1))
+        let hears = self.deconvolution.weight.dims()[0] > x.dims()[1];
+        let x = self.norm.forward(x);
+        self.deconvolution.forward(if hears { Tensor::cat(vec![x, raw], 1) } else { x })
+    }
+
+    /// The same layer with room for one raw channel, which it does not hear where it had none, and `out` channels, equal
+    /// ones where it had one.
+    fn whole(mut self, out: usize) -> Self {
+        let [inputs, had, m, n] = self.deconvolution.weight.dims();
+        let mut weight = self.deconvolution.weight.val();
+        if inputs == self.norm.gamma.dims()[0] {
+            let deaf = Tensor::zeros([1, had, m, n], &weight.device());
+            weight = Tensor::cat(vec![weight, deaf], 0);
+        }
+        let mut bias = self.deconvolution.bias.as_ref().map(|b| b.val());
+        if had < out {
+            weight = weight.repeat_dim(1, out);
+            bias = bias.map(|b| b.repeat_dim(0, out));
+        }
+        self.deconvolution.weight = Param::from_tensor(weight);
+        self.deconvolution.bias = bias.map(Param::from_tensor);
+        self.deconvolution.channels = [self.deconvolution.weight.dims()[0], self.deconvolution.weight.dims()[1]];
+        self
     }
 }
 
@@ -159,11 +195,23 @@ impl Generator {
         let a5 = self.fifth.forward_with(stitch(a4.clone(), 8), pin_distance.clone());
         let a5 = relu(a5 + a4);
         let pattern = self.sixth.forward_with(a5, pin_distance);
-        let field = tanh(match level {
+        let pattern = match level {
             Some(level) => pattern + level.reshape([batch, CHANNELS, 1, 1]),
             None => pattern,
-        });
-        GeneratorOutput { field, fabric }
+        };
+        // one matrix stands for all
+        let [_, _, m, n] = pattern.dims();
+        GeneratorOutput { field: tanh(pattern).expand([batch, CHANNELS, m, n]), fabric }
+    }
+
+    /// The copy for inference in the shapes of the generator file: with the pins, deaf to them where it was built without,
+    /// and four channels, equal ones where it was built with one. It answers what this one answers.
+    pub fn whole(&self) -> Generator {
+        let mut g = self.valid();
+        let width = g.fifth.deconvolution.weight.dims()[1];
+        g.fifth = g.fifth.whole(width);
+        g.sixth = g.sixth.whole(CHANNELS);
+        g
     }
 
     /// Sum of the squares of all kernels and matrices, the sum of eq. 18 (biases and normalisation have no part in
@@ -213,8 +261,11 @@ mod tests {
 
     #[test]
     fn a_width_of_zero_is_an_error() {
-        let e = GeneratorConfig { width: 0, levels: true }.init(1, &Device::flex()).expect_err("zero");
+        let error = |c: GeneratorConfig| c.init(1, &Device::flex()).expect_err("refused");
+        let e = error(GeneratorConfig { width: 0, ..GeneratorConfig::default() });
         assert_eq!(e, NetError::Width(0));
         assert!(e.to_string().contains('0'));
+        let both = GeneratorConfig { one_matrix: true, ..GeneratorConfig::default() };
+        assert_eq!(error(both), NetError::OneMatrix);
     }
 }

@@ -1,0 +1,127 @@
+//! A generator as it is asked here: words in, stiffness and limits out.
+
+use std::fs;
+use std::path::Path;
+
+use burn::Tensor;
+use burn::module::Module;
+use burn::tensor::{Device, TensorData};
+use taut::{field, noise};
+
+use super::EvaluateError;
+use crate::export::{self, ExportMeta, TOKENS};
+use crate::gan::{Coding, TrainConfig, pin_map, weighted};
+use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, Generator, NOISE};
+use crate::words::WordTable;
+use crate::words::tokens::{resolve, tokenize};
+
+/// A generator for inference with its words.
+pub struct Net {
+    generator: Generator,
+    words: WordTable,
+    codings: ([Coding; CHANNELS], [Coding; FABRIC]),
+}
+
+/// What a generator tells of a description.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Stiffness in N/m, `[4][32][32]`.
+    field: Vec<f32>,
+    /// Strain limits of warp, weft and diagonal.
+    pub limits: [f32; 3],
+}
+
+impl Told {
+    /// The field on a grid, as the runtime moves it.
+    pub fn on(&self, rows: usize, columns: usize) -> Vec<f32> {
+        let channel = |c: usize| &self.field[c * GRID * GRID..][..GRID * GRID];
+        let places = (0..CHANNELS).flat_map(|c| (0..rows * columns).map(move |i| (c, i)));
+        let value = |(c, i): (usize, usize)| {
+            let of = |row: usize, column: usize| channel(c)[row * GRID + column];
+            field::bilinear((GRID, GRID), of, (i / columns, i % columns), (rows, columns))
+        };
+        places.map(value).collect()
+    }
+}
+
+impl Net {
+    /// That of a configuration with the weights that a run saved.
+    pub fn trained(weights: &Path, config: &TrainConfig) -> Result<Net, EvaluateError> {
+        let words = weighted(WordTable::committed().map_err(EvaluateError::part)?);
+        let first = config.generator().init(config.seed, &Device::flex()).map_err(EvaluateError::part)?;
+        let generator = first.try_load_file(weights);
+        let generator = generator.map_err(|e| EvaluateError::Part(format!("{}: {e:?}", weights.display())))?;
+        Ok(Net { generator, words, codings: Coding::of(&config.meta()?) })
+    }
+
+    /// That of a generator file.
+    pub fn load(path: &Path) -> Result<Net, EvaluateError> {
+        let named = |e: &dyn std::fmt::Display| EvaluateError::Part(format!("{}: {e}", path.display()));
+        let bytes = fs::read(path).map_err(|e| named(&e))?;
+        let (generator, words, meta): (Generator, WordTable, ExportMeta) =
+            export::import(&bytes).map_err(|e| named(&e))?;
+        Ok(Net { generator, words, codings: Coding::of(&meta) })
+    }
+
+    /// What it tells of a description; `pins` are particles of its own 32 x 32 grid, another seed is another piece of the
+    /// fabric.
+    pub fn tell(&self, description: &str, pins: &[usize], seed: u64) -> Result<Told, EvaluateError> {
+        let look = |w: &str| self.words.index(w);
+        let mut indices: Vec<usize> = tokenize(description).iter().flat_map(|w| resolve(w, &look).0).collect();
+        indices.truncate(TOKENS);
+        if indices.is_empty() {
+            return Err(EvaluateError::Part(format!("the generator knows no word of `{description}`")));
+        }
+        let mut sum = vec![0.0f32; DESCRIPTION];
+        for word in indices {
+            sum.iter_mut().zip(self.words.vector(word)).for_each(|(s, x)| *s += x);
+        }
+        let device = Device::flex();
+        let row = |v: Vec<f32>| {
+            let n = v.len();
+            Tensor::<2>::from_data(TensorData::new(v, [1, n]), &device)
+        };
+        let z = (0..NOISE as u32).map(|i| noise::gaussian(seed, i)).collect();
+        let pins = row(pin_map(pins)).reshape([1, 1, GRID, GRID]);
+        let out = self.generator.forward(row(sum), row(z), pins);
+        let read = |data: TensorData| data.try_into_vec::<f32>().map_err(|e| EvaluateError::Part(format!("{e:?}")));
+        let decode = |t: f32, coding: &Coding| {
+            let (offset, slope) = coding.line();
+            (offset + slope * f64::from(t)).exp() as f32
+        };
+        let field = read(out.field.into_data())?;
+        let of_channel = |(i, t): (usize, &f32)| decode(*t, &self.codings.0[i / (GRID * GRID)]);
+        let fabric = read(out.fabric.into_data())?;
+        Ok(Told {
+            field: field.iter().enumerate().map(of_channel).collect(),
+            limits: std::array::from_fn(|i| decode(fabric[2 + i], &self.codings.1[2 + i])),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use taut_lab::scene::Scene;
+
+    #[test]
+    fn the_file_that_ships_tells_what_words_mean() {
+        let net = Net::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/generator.onnx")).unwrap();
+        let warp = |words: &str| {
+            let told = net.tell(words, &Scene::Hang2.pins(GRID, GRID), 3).unwrap();
+            let mut k = told.on(16, 20);
+            assert_eq!(k.len(), 4 * 320);
+            k.truncate(320);
+            k.sort_by(f32::total_cmp);
+            (k[160], told.limits)
+        };
+        let ((denim, stiff), (jersey, soft)) = (warp("denim"), warp("cotton jersey"));
+        assert!((1500.0..2600.0).contains(&denim) && (250.0..900.0).contains(&jersey), "{denim} {jersey}");
+        assert!(soft.iter().zip(&stiff).all(|(soft, stiff)| soft > stiff), "{soft:?} {stiff:?}");
+        // its own size is what it says
+        let told = net.tell("denim", &[], 0).unwrap();
+        assert_eq!(told.on(GRID, GRID), told.field);
+        assert!(net.tell("qqq", &[], 0).is_err());
+        assert!(Net::load(Path::new("none.onnx")).is_err());
+    }
+}
