@@ -16,6 +16,7 @@
 //! in the right side; their rows are filtered out. Forces beside the springs (air, hinges, pulls) are explicit: they are
 //! those of x_n in the first Newton step and of its result in the second.
 
+mod apply;
 mod blocks;
 mod coarse;
 mod gradients;

@@ -98,7 +98,8 @@ impl Level {
     /// The node before a particle and the share of the next one.
     pub fn before(&self, d: usize, particle: usize) -> (usize, f32) {
         let (s, size) = (self.span.get(d).copied().unwrap_or(1).max(1), self.size.get(d).copied().unwrap_or(2));
-        let node = (particle / s).min(size.saturating_sub(2));
+        // a span is a power of two, and a division would cost more than all else here
+        let node = (particle >> s.trailing_zeros()).min(size.saturating_sub(2));
         let (a, b) = (self.particle(d, node), self.particle(d, node + 1));
         (node, particle.saturating_sub(a) as f32 / b.saturating_sub(a).max(1) as f32)
     }
@@ -171,8 +172,19 @@ fn thin(from: &[f32], first: usize, stride: usize, fine: &Level, to: &mut [f32],
     for (row, to) in to.chunks_exact_mut(coarse.stride().max(1)).enumerate().take(node_rows) {
         let row = if rows == node_rows { row } else { (2 * row).min(rows.saturating_sub(1)) };
         let from = span(from, first + row * stride, columns);
-        for (to, from) in to.iter_mut().zip(from.iter().step_by(step)) {
-            *to = *from;
+        if step == 1 {
+            copy(to, from);
+        } else {
+            let ((pairs, rest), (ends, _)) = (from.as_chunks::<16>(), to.as_chunks_mut::<8>());
+            for (to, from) in ends.iter_mut().zip(pairs) {
+                let (from, _) = from.as_chunks::<2>();
+                for (to, [from, _]) in to.iter_mut().zip(from) {
+                    *to = *from;
+                }
+            }
+            for (to, from) in to.iter_mut().skip(pairs.len() * 8).zip(rest.iter().step_by(2)) {
+                *to = *from;
+            }
         }
         if let Some(last) = from.last() {
             write(to, nodes.saturating_sub(1), *last);

@@ -68,7 +68,7 @@ impl Reach {
 }
 
 /// Numbers of the tables of [`Family`]: whichever lane holds the last link, 16 before it, 16 beyond, and a vector.
-const TABLE: usize = 48;
+const TABLE: usize = 64;
 
 /// The limits of the links that start side by side in a row: one for all but the last, another for that, none beyond.
 pub(crate) struct Family {
@@ -142,17 +142,10 @@ impl Pass for Sweeps<'_> {
     }
 }
 
-/// Lanes 0, 1, 0, 1, ...
-const ODD: [f32; 16] = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0];
-
 /// What is the same in a whole sweep.
 struct Constants<V> {
     zero: V,
-    half: V,
-    one: V,
-    infinity: V,
     tiny: V,
-    odd: V,
     columns: usize,
     stride: usize,
 }
@@ -164,16 +157,7 @@ impl Sweeps<'_> {
             return false;
         };
         let s = &self.sheet;
-        let c = Constants {
-            zero,
-            half: zero.all(0.5),
-            one: zero.all(1.0),
-            infinity: zero.all(f32::INFINITY),
-            tiny: zero.all(TINY),
-            odd: zero.read(&ODD, 0),
-            columns: s.columns,
-            stride: s.stride,
-        };
+        let c = Constants { zero, tiny: zero.all(TINY), columns: s.columns, stride: s.stride };
         let along = s.reach.along(s.columns);
         let across = [s.reach.across(s.columns, false), s.reach.across(s.columns, true)];
         let pair = |row: usize| if row + 2 == s.rows { &across[1] } else { &across[0] };
@@ -352,125 +336,56 @@ unsafe fn along_u<V: Vector, const MASK: bool>(c: &Constants<V>, p: &Pointers, f
         }
         return moved;
     }
-    // The odd links of a vector end in the next one, whose even links must be done before: so they are one vector behind.
-    let none = Half { e: Three([c.zero; 3]), long: c.zero };
-    let mut before = none;
-    let mut pending = false;
-    let mut column = 0;
-    // SAFETY: the caller's promise.
-    unsafe {
-        let mut this = even::<V, MASK>(c, p, family, first, 0);
-        while column < c.columns {
-            let ahead = column.wrapping_add(V::LANES);
-            let next = ahead < c.columns && even::<V, MASK>(c, p, family, first, ahead);
-            moved |= this;
-            // nothing too long here before, and nothing here or at the end of the last link has moved
-            if this || next || pending {
-                (before, pending) = odd::<V, MASK>(c, p, family, first, column, before);
-                moved |= pending;
-            } else {
-                before = none;
-            }
-            this = next;
-            column = ahead;
+    // the links that begin at even columns lie within pairs of vectors; those at odd ones one place on
+    for parity in 0..2 {
+        let mut column = parity;
+        while column < family.links {
+            // SAFETY: the caller's promise.
+            moved |= unsafe { pairs::<V, MASK>(c, p, family, first, column) };
+            column = column.wrapping_add(V::LANES.wrapping_mul(2));
         }
     }
     moved
 }
 
-/// Half of the links of a vector: the ways of their first ends for an inverse mass of 1, and 1 for those that are too long.
-#[derive(Clone, Copy)]
-struct Half<V> {
-    e: Three<V>,
-    long: V,
-}
-
-/// Lanes of which each is the first end of a link in `half` or the second end of one that was begun a lane before.
+/// Every second link along u, from a column on: those within two vectors. Whether any was too long.
 ///
 /// # Safety
-/// The planes have the lanes from the place on.
+/// The planes have the lanes of both vectors.
 #[inline(always)]
-unsafe fn give<V: Vector>(c: &Constants<V>, p: &Pointers, at: usize, here: Three<V>, half: Half<V>, before: Half<V>) {
-    let (e, long) = (half.e.next1(before.e), half.long.next1(before.long));
-    let minus = Three([c.zero; 3]).minus(e);
-    // SAFETY: the caller's promise.
-    unsafe {
-        let way = Three::choose(half.long, c.half, half.e, minus).times(load(c.zero, p.inverse, at));
-        Three::choose(half.long + long, c.half, here.plus(way), here).store(&p.x, at);
-    }
-}
-
-/// The even links of a vector. Whether any of its links, also an odd one, was too long.
-///
-/// # Safety
-/// The planes have the lanes from the place on and one more.
-#[inline(always)]
-unsafe fn even<V: Vector, const MASK: bool>(
+unsafe fn pairs<V: Vector, const MASK: bool>(
     c: &Constants<V>,
     p: &Pointers,
     family: &Family,
     first: usize,
     column: usize,
 ) -> bool {
+    let at = first.wrapping_add(column);
+    let next = at.wrapping_add(V::LANES);
     // SAFETY: the caller's promise.
     unsafe {
-        let (at, limit, square, here, d, d2) = lengths::<V, MASK>(c, p, family, first, column);
+        let (here, there) = Three::load(c.zero, &p.x, at).split(Three::load(c.zero, &p.x, next));
+        let d = there.minus(here);
+        let d2 = d.squared();
+        let ((limit, mut square), (limit_next, mut square_next)) =
+            (family.at(c.zero, column), family.at(c.zero, column.wrapping_add(V::LANES)));
+        if MASK {
+            square = uncut(c.zero, p, square, [at, at.wrapping_add(1)], None);
+            square_next = uncut(c.zero, p, square_next, [next, next.wrapping_add(1)], None);
+        }
+        let [limit, _] = limit.split(limit_next);
+        let [square, _] = square.split(square_next);
         if !d2.any_above(square) {
             return false;
         }
-        let square = c.odd.above(c.half, c.infinity, square);
-        let w = load(c.zero, p.inverse, at) + load(c.zero, p.inverse, at.wrapping_add(1));
-        let half = Half { e: drawn(c, d, d2, limit, w), long: d2.above(square, c.one, c.zero) };
-        give(c, p, at, here, half, Half { e: Three([c.zero; 3]), long: c.zero });
+        let [w, w_there] = load(c.zero, p.inverse, at).split(load(c.zero, p.inverse, next));
+        let e = drawn(c, d, d2, limit, w + w_there);
+        let minus = Three([c.zero; 3]).minus(e);
+        let here = Three::choose(d2, square, here.plus(e.times(w)), here);
+        let there = Three::choose(d2, square, there.plus(minus.times(w_there)), there);
+        let (here, there) = here.weave(there);
+        here.store(&p.x, at);
+        there.store(&p.x, next);
         true
-    }
-}
-
-/// The odd links of a vector; `before` are those of the vector before. Whether any of them was too long.
-///
-/// # Safety
-/// The planes have the lanes from the place on and one more.
-#[inline(always)]
-unsafe fn odd<V: Vector, const MASK: bool>(
-    c: &Constants<V>,
-    p: &Pointers,
-    family: &Family,
-    first: usize,
-    column: usize,
-    before: Half<V>,
-) -> (Half<V>, bool) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let (at, limit, square, here, d, d2) = lengths::<V, MASK>(c, p, family, first, column);
-        let square = c.odd.above(c.half, square, c.infinity);
-        let w = load(c.zero, p.inverse, at) + load(c.zero, p.inverse, at.wrapping_add(1));
-        let half = Half { e: drawn(c, d, d2, limit, w), long: d2.above(square, c.one, c.zero) };
-        give(c, p, at, here, half, before);
-        (half, d2.any_above(square))
-    }
-}
-
-/// Place, limits, their squares, first ends, differences and squared lengths of the links along u of a vector.
-///
-/// # Safety
-/// The planes have the lanes from the place on and one more.
-#[inline(always)]
-unsafe fn lengths<V: Vector, const MASK: bool>(
-    c: &Constants<V>,
-    p: &Pointers,
-    family: &Family,
-    first: usize,
-    column: usize,
-) -> (usize, V, V, Three<V>, Three<V>, V) {
-    let at = first.wrapping_add(column);
-    let (limit, mut square) = family.at(c.zero, column);
-    // SAFETY: the caller's promise.
-    unsafe {
-        if MASK {
-            square = uncut(c.zero, p, square, [at, at.wrapping_add(1)], None);
-        }
-        let here = Three::load(c.zero, &p.x, at);
-        let d = Three::load(c.zero, &p.x, at.wrapping_add(1)).minus(here);
-        (at, limit, square, here, d, d.squared())
     }
 }

@@ -4,7 +4,7 @@
 //! One-sided: a tether pulls, it never pushes. What it moves is also given to the velocity, x += D and v += D/dt.
 
 use crate::force::Substep;
-use crate::layout::{read, span, take, write};
+use crate::layout::{block, read, take, write};
 use crate::math::{max, round16, sqrt};
 use crate::simd::{Pass, Three, Vector};
 use crate::strain_limit::TARGET;
@@ -92,17 +92,33 @@ pub(crate) struct Pull<'p> {
     pub look: bool,
 }
 
+/// Blocks of a row whose anchors are kept for the next row, where they are often the same: below a pinned edge, or a part of
+/// one. To find them one by one takes longer than all else.
+const HELD: usize = 4;
+
+/// The anchors of a block, with the places of the pins. While particles are pulled no pin moves.
+struct Anchors {
+    pins: [u32; BLOCK],
+    x: [[f32; BLOCK]; 3],
+}
+
+impl Anchors {
+    /// No pin is there.
+    const NONE: Anchors = Anchors { pins: [u32::MAX; BLOCK], x: [[0.0; BLOCK]; 3] };
+}
+
 impl Pass for Pull<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn run<V: Vector>(mut self, zero: V) -> bool {
         let mut any = false;
+        let mut held = [const { [const { Anchors::NONE }; TETHERS] }; HELD];
         for row in 0..self.rows {
             let first = self.first.wrapping_add(row.wrapping_mul(self.stride));
             let mut column = 0;
             while column < self.columns {
-                any |= self.block(zero, first.wrapping_add(column));
+                any |= self.block(zero, first.wrapping_add(column), &mut held[column / BLOCK % HELD]);
                 if any && self.look {
                     return true;
                 }
@@ -135,26 +151,37 @@ impl Pull<'_> {
         Three([zero.read(x, place), zero.read(y, place), zero.read(z, place)])
     }
 
-    /// The anchors of the lanes from a place on, one by one.
+    /// The anchors of a block, one by one.
     #[inline(always)]
-    fn anchors_of<V: Vector>(&self, zero: V, tether: usize, at: usize) -> Three<V> {
-        let mut each = [[0.0; BLOCK]; 3];
-        let [xs, ys, zs] = &mut each;
-        let pins = self.tethers.pin.get(tether).map_or(&[][..], |pins| span(pins, at, V::LANES));
-        for (((pin, x), y), z) in pins.iter().zip(xs).zip(ys).zip(zs) {
-            [*x, *y, *z] = self.anchor(pin.to_bits() as usize);
+    fn find(&self, tether: usize, at: usize, held: &mut Anchors) {
+        let Some(pins) = self.tethers.pin.get(tether).and_then(|pins| block::<BLOCK>(pins, at)) else {
+            return;
+        };
+        let mut other = 0;
+        for (pin, held) in pins.iter().zip(&mut held.pins) {
+            other |= pin.to_bits() ^ *held;
+            *held = pin.to_bits();
         }
-        let [x, y, z] = &each;
-        Three([zero.read(x, 0), zero.read(y, 0), zero.read(z, 0)])
+        if other != 0 {
+            let [xs, ys, zs] = &mut held.x;
+            for (((pin, x), y), z) in held.pins.iter().zip(xs).zip(ys).zip(zs) {
+                [*x, *y, *z] = self.anchor(*pin as usize);
+            }
+        }
     }
 
     /// The particles of a block.
     #[inline(always)]
-    fn block<V: Vector>(&mut self, zero: V, at: usize) -> bool {
+    fn block<V: Vector>(&mut self, zero: V, at: usize, held: &mut [Anchors; TETHERS]) -> bool {
         let block = at / BLOCK;
         let [common, common_last] = &self.tethers.common;
         let pins = [read(common, block).to_bits(), read(common_last, block).to_bits()];
         let anchors = [self.anchor(pins[0] as usize), self.anchor(pins[1] as usize)];
+        for (tether, held) in held.iter_mut().enumerate() {
+            if pins[tether] == MIXED {
+                self.find(tether, at, held);
+            }
+        }
         let (one, half) = (zero.all(1.0), zero.all(0.5));
         let mut any = false;
         let mut lane = 0;
@@ -166,7 +193,8 @@ impl Pull<'_> {
             for tether in 0..TETHERS {
                 let length = zero.read(self.tethers.length[tether], at);
                 let anchor = if pins[tether] == MIXED {
-                    self.anchors_of(zero, tether, at)
+                    let [x, y, z] = &held[tether].x;
+                    Three([zero.read(x, lane), zero.read(y, lane), zero.read(z, lane)])
                 } else if pins[tether] & RUN != 0 {
                     self.run_of(zero, (pins[tether] & !RUN) as usize + lane)
                 } else {

@@ -15,6 +15,12 @@ fn sheet<'a>(rows: u32, columns: u32, families: Families, features: Features, bl
     let n = (rows * columns) as usize;
     let field: Vec<f32> = (0..4 * n).map(|i| 2000.0 * (0.2 + noise::uniform(3, i as u32))).collect();
     cloth.set_stiffness_field(&FieldView::new(4, rows as usize, columns as usize, &field).unwrap());
+    if features.contains(Features::MASK) {
+        // holes of all sizes, so also across the borders of bands, and none at the pins or the pulled particle
+        let mask: Vec<u8> =
+            (0..n).map(|i| u8::from([0, 7, n / 2].contains(&i) || noise::uniform(5, i as u32) > 0.2)).collect();
+        cloth.set_mask(&mask).unwrap();
+    }
     cloth.pin(0).unwrap();
     cloth.pin(n / 2).unwrap();
     cloth
@@ -43,9 +49,10 @@ fn bands_have_the_bits_of_the_step() {
     let all = Families::ALL;
     let no_bend = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
     let no_shear = Families(Families::STRUCTURAL.0 | Families::BEND.0);
+    let masked_tethers = Features(Features::MASK.0 | Features::TETHERS.0);
     for (rows, columns, per_band) in [(40, 33, 8), (31, 17, 8), (97, 5, 16), (24, 64, 11), (9, 9, 8)] {
         for families in [all, no_bend, no_shear, Families::STRUCTURAL] {
-            for features in [Features::NONE, Features::PULL, Features::TETHERS] {
+            for features in [Features::NONE, Features::PULL, Features::TETHERS, Features::MASK, masked_tethers] {
                 for width in Width::ALL.into_iter().filter(|w| w.is_supported()) {
                     let (mut one, mut other) = (Vec::new(), Vec::new());
                     let mut plain = sheet(rows, columns, families, features, &mut one);

@@ -3,8 +3,9 @@
 //! Sums over the particles have one order at every width of vector: in each row 16 lanes of f32 (lane = column modulo 16)
 //! for x, y and z one after the other, added to 16 lanes of f64 after the row, and those to one number by a tree.
 
+use super::apply::apply_row;
 use super::coarse;
-use super::operator::{Linear, apply_row};
+use super::operator::Linear;
 use crate::force::{Planes, View};
 use crate::layout::{Layout, span};
 use crate::simd::{self, Pass, Three, Vector};

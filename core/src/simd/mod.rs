@@ -126,6 +126,13 @@ pub(crate) trait Vector:
     /// The lanes two places on. `before2` is the vector before `before`; only a single lane needs it.
     fn next2(self, before: Self, before2: Self) -> Self;
 
+    /// The even lanes of this one and of the vector after it, in whatever order suits the processor, then the odd lanes of
+    /// both in the same order. Not for a single lane.
+    fn split(self, after: Self) -> [Self; 2];
+
+    /// The two vectors that were [`Vector::split`].
+    fn weave(self, odd: Self) -> [Self; 2];
+
     /// The numbers of a plane from a place on, zeros where they are not all inside.
     #[inline(always)]
     fn read(self, plane: &[f32], at: usize) -> Self {

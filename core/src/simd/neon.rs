@@ -92,6 +92,18 @@ impl Vector for F32x4 {
     }
 
     #[inline(always)]
+    fn split(self, after: F32x4) -> [F32x4; 2] {
+        // SAFETY: as above.
+        unsafe { [F32x4(vuzp1q_f32(self.0, after.0)), F32x4(vuzp2q_f32(self.0, after.0))] }
+    }
+
+    #[inline(always)]
+    fn weave(self, odd: F32x4) -> [F32x4; 2] {
+        // SAFETY: as above.
+        unsafe { [F32x4(vzip1q_f32(self.0, odd.0)), F32x4(vzip2q_f32(self.0, odd.0))] }
+    }
+
+    #[inline(always)]
     fn next2(self, before: F32x4, _: F32x4) -> F32x4 {
         // SAFETY: as above.
         F32x4(unsafe { vextq_f32::<2>(before.0, self.0) })

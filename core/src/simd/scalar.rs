@@ -82,6 +82,16 @@ impl Vector for Scalar {
     }
 
     #[inline(always)]
+    fn split(self, after: Scalar) -> [Scalar; 2] {
+        [self, after]
+    }
+
+    #[inline(always)]
+    fn weave(self, odd: Scalar) -> [Scalar; 2] {
+        [self, odd]
+    }
+
+    #[inline(always)]
     fn next2(self, _: Scalar, before2: Scalar) -> Scalar {
         before2
     }

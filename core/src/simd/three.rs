@@ -135,6 +135,22 @@ impl<V: Vector> Three<V> {
         Three([a[0].next1(b[0]), a[1].next1(b[1]), a[2].next1(b[2])])
     }
 
+    /// [`Vector::split`] of each.
+    #[inline(always)]
+    pub fn split(self, after: Three<V>) -> (Three<V>, Three<V>) {
+        let (a, b) = (self.0, after.0);
+        let ([x, next_x], [y, next_y], [z, next_z]) = (a[0].split(b[0]), a[1].split(b[1]), a[2].split(b[2]));
+        (Three([x, y, z]), Three([next_x, next_y, next_z]))
+    }
+
+    /// [`Vector::weave`] of each.
+    #[inline(always)]
+    pub fn weave(self, odd: Three<V>) -> (Three<V>, Three<V>) {
+        let (a, b) = (self.0, odd.0);
+        let ([x, next_x], [y, next_y], [z, next_z]) = (a[0].weave(b[0]), a[1].weave(b[1]), a[2].weave(b[2]));
+        (Three([x, y, z]), Three([next_x, next_y, next_z]))
+    }
+
     /// [`Vector::next2`] of each.
     #[inline(always)]
     pub fn next2(self, before: Three<V>, before2: Three<V>) -> Three<V> {

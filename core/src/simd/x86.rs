@@ -12,7 +12,7 @@ use super::{Pass, Vector};
 
 macro_rules! vector {
     ($(#[$about:meta])* $name:ident, $lanes:literal, $type:ty, $zero:ident, $all:ident, $add:ident, $sub:ident, $mul:ident,
-        $div:ident, $sqrt:ident, $max:ident, $min:ident) => {
+        $div:ident, $sqrt:ident, $max:ident, $min:ident, $shuffle:ident, $low:ident, $high:ident) => {
         $(#[$about])*
         #[derive(Clone, Copy)]
         pub(crate) struct $name($type);
@@ -82,6 +82,24 @@ macro_rules! vector {
                 self.after1(before)
             }
 
+            /// Within each 128 bits: in F32x8 0 2 8 10 4 6 12 14.
+            #[inline(always)]
+            fn split(self, after: $name) -> [$name; 2] {
+                // SAFETY: as above.
+                unsafe {
+                    [
+                        $name($shuffle::<0b10_00_10_00>(self.0, after.0)),
+                        $name($shuffle::<0b11_01_11_01>(self.0, after.0)),
+                    ]
+                }
+            }
+
+            #[inline(always)]
+            fn weave(self, odd: $name) -> [$name; 2] {
+                // SAFETY: as above.
+                unsafe { [$name($low(self.0, odd.0)), $name($high(self.0, odd.0))] }
+            }
+
             #[inline(always)]
             fn next2(self, before: $name, _: $name) -> $name {
                 self.after2(before)
@@ -103,19 +121,19 @@ macro_rules! vector {
 vector! {
     /// 4 numbers, SSE2.
     F32x4, 4, __m128, _mm_setzero_ps, _mm_set1_ps, _mm_add_ps, _mm_sub_ps, _mm_mul_ps, _mm_div_ps, _mm_sqrt_ps, _mm_max_ps,
-    _mm_min_ps
+    _mm_min_ps, _mm_shuffle_ps, _mm_unpacklo_ps, _mm_unpackhi_ps
 }
 
 vector! {
     /// 8 numbers, AVX2.
     F32x8, 8, __m256, _mm256_setzero_ps, _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps,
-    _mm256_sqrt_ps, _mm256_max_ps, _mm256_min_ps
+    _mm256_sqrt_ps, _mm256_max_ps, _mm256_min_ps, _mm256_shuffle_ps, _mm256_unpacklo_ps, _mm256_unpackhi_ps
 }
 
 vector! {
     /// 16 numbers, AVX-512F.
     F32x16, 16, __m512, _mm512_setzero_ps, _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_div_ps,
-    _mm512_sqrt_ps, _mm512_max_ps, _mm512_min_ps
+    _mm512_sqrt_ps, _mm512_max_ps, _mm512_min_ps, _mm512_shuffle_ps, _mm512_unpacklo_ps, _mm512_unpackhi_ps
 }
 
 impl F32x4 {
