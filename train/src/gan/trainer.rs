@@ -335,7 +335,7 @@ impl Trainer {
         let out = self.generator.forward(batch.words.clone(), batch.noise, batch.pins);
         let x = self.hang(out.field.clone(), &mut cloths)?;
         // the distances mean nothing where folds bifurcate
-        let shape = (self.config.shape > 0.0).then(|| self.shape(x.clone(), &chosen));
+        let off = (self.config.shape > 0.0).then(|| self.shape(x.clone(), &chosen));
         let fake = render_images(&self.renderer, seen(x, &chosen)).map_err(TrainError::part)?;
 
         // the same augmentations and noise for both sides, drawn anew for each
@@ -369,11 +369,11 @@ impl Trainer {
             + weights.clone() * self.config.beta
             + picture.clone() * self.config.paired
             + told.loss.clone() * self.config.prior;
-        if let Some([position, stretch]) = &shape {
+        if let Some([position, stretch]) = &off {
             let [p, s] = [self.config.position_weight, self.config.stretch_weight].map(|w| w * self.config.shape);
             loss = loss + position.clone() * p + stretch.clone() * s;
         }
-        let [position, stretch] = shape.map_or([0.0; 2], |both| both.map(|x| scalar(&x)));
+        let [position, stretch] = off.map_or([0.0; 2], |both| both.map(|x| scalar(&x)));
         let gradient_norm = self.update_generator(&loss);
         Ok(Losses {
             generator: scalar(&loss),
