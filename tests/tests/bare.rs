@@ -35,7 +35,7 @@ const CRATES: [&str; 12] = [
     "num_rational",
     "num_traits i128 libm",
     "simba libm",
-    "taut",
+    "taut avx2 avx512 default",
     "taut-bare",
     "typenum",
 ];
