@@ -9,5 +9,8 @@ pub mod image;
 pub mod nets;
 pub mod own;
 pub mod reference;
+mod shard;
 mod sparse;
 pub mod words;
+
+pub use shard::Shard;

@@ -1,7 +1,6 @@
 //! `taut-train data`.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -11,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::plan::Trajectory;
 use super::{CHANNELS, DataError, GRID, Plan, Sample, Split, load, make, store};
+use crate::Shard;
 use crate::image::{RenderConfig, Renderer, SheetLayout, available_threads, write_sheet};
 
 /// Pictures of cloth to learn from and to judge by.
@@ -33,26 +33,6 @@ pub struct DataArgs {
     pub threads: Option<usize>,
 }
 
-/// A share of the work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    /// From 0.
-    index: usize,
-    of: usize,
-}
-
-impl FromStr for Shard {
-    type Err = String;
-
-    fn from_str(s: &str) -> Result<Shard, String> {
-        let numbers = s.split_once('/').and_then(|(i, n)| Some((i.parse::<usize>().ok()?, n.parse::<usize>().ok()?)));
-        match numbers {
-            Some((i, n)) if (1..=n).contains(&i) => Ok(Shard { index: i - 1, of: n }),
-            _ => Err(format!("`{s}` is no share such as 1/4 or 4/4")),
-        }
-    }
-}
-
 /// Makes what is missing of a set.
 ///
 /// # Errors
@@ -68,7 +48,7 @@ pub fn run(args: &DataArgs) -> Result<(), DataError> {
 /// [`run`], until `stop` is set.
 pub(super) fn run_until(args: &DataArgs, stop: &AtomicBool) -> Result<(), DataError> {
     let plan = Plan { seed: args.seed, quick: args.quick };
-    let shard = args.shard.unwrap_or(Shard { index: 0, of: 1 });
+    let shard = args.shard.unwrap_or(Shard::WHOLE);
     let threads = args.threads.unwrap_or(available_threads().get());
     if !(1..=1024).contains(&threads) {
         return Err(DataError::Given("--threads must be 1 to 1024".into()));
@@ -79,7 +59,7 @@ pub(super) fn run_until(args: &DataArgs, stop: &AtomicBool) -> Result<(), DataEr
         parts.map(move |(i, part)| (split, i, part))
     });
     let mine: Vec<(Split, usize, Vec<Trajectory>)> =
-        all.enumerate().filter(|(i, _)| i % shard.of == shard.index).map(|(_, part)| part).collect();
+        all.enumerate().filter(|(i, _)| shard.has(*i)).map(|(_, part)| part).collect();
     let todo: Vec<_> = mine.iter().filter(|(split, i, _)| !store::has(&args.out, *split, *i)).collect();
     if todo.is_empty() {
         eprintln!("{}: all there", args.out.display());

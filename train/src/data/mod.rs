@@ -13,7 +13,7 @@ mod store;
 #[cfg(test)]
 mod tests;
 
-pub use command::{DataArgs, Shard, run};
+pub use command::{DataArgs, run};
 pub use fabric::{material, piece, sample};
 pub use make::settled;
 pub use plan::{Plan, Split, Trajectory};

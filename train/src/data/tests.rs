@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::command::run_until;
 use super::*;
+use crate::Shard;
 
 fn args(out: &Path) -> DataArgs {
     DataArgs { out: out.into(), seed: 3, shard: None, quick: true, threads: Some(2) }

@@ -9,9 +9,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use taut_lab::ledger::Ledger;
 
+use super::EvaluateError;
 use super::held::{SCENES, TestSet};
 use super::net::Net;
-use super::{EvaluateError, Shard};
+use crate::Shard;
 use crate::gan::{AdversarialLoss, Checkpoint, Dataset, StageSteps, TrainConfig, bar, renderer, train_in};
 use crate::words::WordTable;
 

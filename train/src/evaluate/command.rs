@@ -9,7 +9,8 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use taut_lab::plot::{Chart, Figure as _};
 
-use super::{Bench, EvaluateError, Shard, losses, noise, rivals, unseen};
+use super::{Bench, EvaluateError, losses, noise, rivals, unseen};
+use crate::Shard;
 use crate::gan::write_whole;
 
 /// The paper's figures and ours.

@@ -20,12 +20,10 @@ pub mod shuffle;
 pub mod unseen;
 
 mod bench;
-mod shard;
 mod table;
 
 pub use bench::Bench;
 pub use command::{EvaluateArgs, Figure, run};
-pub use shard::Shard;
 
 use std::fmt;
 
