@@ -4,6 +4,7 @@ pub mod cloth;
 pub mod data;
 pub mod evaluate;
 pub mod export;
+mod files;
 pub mod gan;
 pub mod image;
 pub mod nets;
@@ -11,6 +12,7 @@ pub mod own;
 pub mod reference;
 mod shard;
 mod sparse;
+mod stop;
 pub mod words;
 
 pub use shard::Shard;

@@ -5,12 +5,14 @@
 //! and on the bias 4/(S11 + S22 + 2 S12 + 1/s), S being the inverse of C. These three are solved for C11, C22 and s.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
 use taut_lab::fabric::{Fabric, RIGIDITY_EXPONENT, rigidity_at};
 
+use crate::files::write_whole;
 use crate::gan::TrainConfig;
 
 /// Columns of the file.
@@ -85,12 +87,14 @@ pub fn run(args: &FabricArgs) -> Result<(), OwnError> {
     let fabric = tests.fabric(&args.words, args.bending_length_m).map_err(|e| file(&args.csv, &e))?;
     let mut config = match std::fs::read_to_string(&args.out) {
         Ok(text) => serde_json::from_str(&text).map_err(|e| file(&args.out, &e))?,
-        Err(_) => TrainConfig::default(),
+        Err(e) if e.kind() == ErrorKind::NotFound => TrainConfig::default(),
+        Err(e) => return Err(file(&args.out, &e)),
     };
     config.own.retain(|own| own.words != fabric.words);
     config.own.push(fabric.clone());
     let json = |e: serde_json::Error| file(&args.out, &e);
-    std::fs::write(&args.out, serde_json::to_string_pretty(&config).map_err(json)?).map_err(|e| file(&args.out, &e))?;
+    let text = serde_json::to_string_pretty(&config).map_err(json)?;
+    write_whole(&args.out, text.as_bytes()).map_err(|e| file(&args.out, &e))?;
     let [warp, weft, diagonal] = fabric.fabric().stretch_limits().map(|l| 100.0 * l);
     println!("{}", serde_json::to_string_pretty(&fabric).map_err(json)?);
     println!("limits in percent: warp {warp:.2}, weft {weft:.2}, diagonal {diagonal:.2}");

@@ -1,7 +1,6 @@
 //! `taut-train data`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -12,6 +11,7 @@ use super::plan::Trajectory;
 use super::{CHANNELS, DataError, GRID, Plan, Sample, Split, load, make, store};
 use crate::Shard;
 use crate::image::{RenderConfig, Renderer, SheetLayout, available_threads, write_sheet};
+use crate::stop::on_ctrl_c;
 
 /// Pictures of cloth to learn from and to judge by.
 #[derive(Debug, Args)]
@@ -38,11 +38,7 @@ pub struct DataArgs {
 /// # Errors
 /// [`DataError`]; after Ctrl-C the parts that are done are kept.
 pub fn run(args: &DataArgs) -> Result<(), DataError> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    // a second handler in one process is refused; then Ctrl-C simply ends it, and what is written is whole at any time
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
-    run_until(args, &stop)
+    run_until(args, &on_ctrl_c())
 }
 
 /// [`run`], until `stop` is set.

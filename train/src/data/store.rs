@@ -12,6 +12,7 @@ use taut_lab::npz::{self, Npz, Numbers};
 use super::make::Frame;
 use super::plan::Trajectory;
 use super::{CHANNELS, DataError, GRID, Plan, Sample, Scene, Split};
+use crate::files::write_whole;
 use crate::image::{Channel, PIXELS};
 
 /// Version of the files.
@@ -66,7 +67,7 @@ pub(super) fn open(folder: &Path, plan: Plan) -> Result<(), DataError> {
         return Ok(());
     }
     let text = serde_json::to_string_pretty(&Header::of(plan)).map_err(|e| DataError::file(&path, e))?;
-    write_whole(&path, text.as_bytes())
+    write_whole(&path, text.as_bytes()).map_err(|e| DataError::file(&path, e))
 }
 
 fn header(folder: &Path) -> Result<Header, DataError> {
@@ -124,7 +125,7 @@ pub(super) fn write(folder: &Path, split: Split, part: usize, all: &[Pictures<'_
     )
     .map_err(|e| DataError::file(&new, e))?;
     fs::rename(&new, &npz_path).map_err(|e| DataError::file(&npz_path, e))?;
-    write_whole(&lines_path, lines.as_bytes())
+    write_whole(&lines_path, lines.as_bytes()).map_err(|e| DataError::file(&lines_path, e))
 }
 
 /// Reads the pictures of a split, in order.
@@ -207,11 +208,4 @@ fn read(folder: &Path, split: Split, part: usize, plan: &[Trajectory]) -> Result
             })
         })
         .collect()
-}
-
-/// Writes a file whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
-    let new = path.with_extension("new");
-    fs::write(&new, bytes).map_err(|e| DataError::file(&new, e))?;
-    fs::rename(&new, path).map_err(|e| DataError::file(path, e))
 }

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use taut::Hash64;
 use taut_lab::ledger::Ledger;
 
 use super::EvaluateError;
@@ -108,6 +109,14 @@ impl<'a> Bench<'a> {
         }
         bar.finish_and_clear();
         Ok(rows)
+    }
+
+    /// What the generator file holds, in hexadecimal: rows of another one are others, wherever it lies.
+    pub fn model_digest(&self) -> Result<String, EvaluateError> {
+        let named = |e: std::io::Error| EvaluateError::Part(format!("{}: {e}", self.model.display()));
+        let mut hash = Hash64::new();
+        hash.bytes(&fs::read(&self.model).map_err(named)?);
+        Ok(format!("{:016x}", hash.finish()))
     }
 
     /// The files of a figure's ledgers, in the order of their names.

@@ -2,16 +2,17 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use taut_lab::plot::{Chart, Figure as _};
 
+use super::paper::Paper;
 use super::{Bench, EvaluateError, losses, noise, rivals, unseen};
 use crate::Shard;
 use crate::gan::write_whole;
+use crate::stop::on_ctrl_c;
 
 /// The paper's figures and ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -114,46 +115,12 @@ pub struct Means {
     pub corrections: Vec<unseen::Mean>,
 }
 
-/// The paper's figures, of its own data.
-#[derive(Debug, Serialize)]
-pub struct Paper {
-    /// Fig. 7: PSNR in dB is above this below 4 % of noise.
-    pub psnr_below_4_pct_db: f64,
-    /// Fig. 7: and below this above 4 %.
-    pub psnr_above_4_pct_db: f64,
-    /// Fig. 7: SSIM at 6 %.
-    pub ssim_at_6_pct: f64,
-    /// Fig. 8: SSIM with one loss.
-    pub ssim_with_one_loss: f64,
-    /// Fig. 8: what all losses add to the PSNR in dB.
-    pub psnr_gain_db: f64,
-    /// Fig. 8: and take from the NMSE.
-    pub nmse_gain: f64,
-}
-
-impl Default for Paper {
-    fn default() -> Paper {
-        Paper {
-            psnr_below_4_pct_db: 33.5,
-            psnr_above_4_pct_db: 31.4,
-            ssim_at_6_pct: 0.922,
-            ssim_with_one_loss: 0.952,
-            psnr_gain_db: 2.66,
-            nmse_gain: 0.032,
-        }
-    }
-}
-
 /// Runs what is asked for and prints it.
 ///
 /// # Errors
 /// [`EvaluateError`]; after Ctrl-C the rows that are done are kept.
 pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    // a second handler in one process is refused; then Ctrl-C simply ends it, and the ledgers are whole all the same
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
-    let (report, text) = evaluate(args, &stop)?;
+    let (report, text) = evaluate(args, &on_ctrl_c())?;
     let json = serde_json::to_string_pretty(&report).map_err(EvaluateError::part)? + "\n";
     write_whole(&args.out.join("report.json"), json.as_bytes())?;
     let shown = if args.json { &json } else { &text };
@@ -226,6 +193,7 @@ fn save(path: &Path, chart: &Chart) -> Result<(), EvaluateError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::Ordering;
 
     #[test]
     fn a_quick_evaluation_makes_every_figure_and_measures_nothing_twice() {

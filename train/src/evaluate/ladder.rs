@@ -12,10 +12,9 @@ pub struct Rung {
     pub config: TrainConfig,
 }
 
-/// The size of the nets and of the cloth that the figures share: small enough that a net is trained in minutes. The step size
+/// A recipe at the size of the nets and of the cloth that the figures share: small enough that a net is trained in minutes. The step size
 /// is ten times the paper's: a few hundred steps at the paper's would leave the first weights as they were.
-pub fn small(quick: bool) -> TrainConfig {
-    let ours = TrainConfig::default();
+pub fn small(recipe: TrainConfig, quick: bool) -> TrainConfig {
     let (grid, width, batch, fabrics) = if quick { (8, 2, 2, 2) } else { (16, 8, 8, 48) };
     TrainConfig {
         grid,
@@ -29,18 +28,21 @@ pub fn small(quick: bool) -> TrainConfig {
         fabrics,
         evaluation_fabrics: if quick { 1 } else { 4 },
         learning_rate: 1e-3,
-        ..ours
+        ..recipe
     }
 }
 
-/// Steps of a net in so many minutes, `rate` a minute.
-pub fn steps(minutes: f64, rate: f64, quick: bool) -> usize {
-    if quick { 2 } else { (minutes * rate).round().max(1.0) as usize }
+/// Steps of such a net in a minute of one core: a number, so that no figure depends on the machine.
+const STEPS_PER_MINUTE: f64 = 60.0;
+
+/// Steps of a net in so many minutes.
+pub fn steps(minutes: f64, quick: bool) -> usize {
+    if quick { 2 } else { (minutes * STEPS_PER_MINUTE).round().max(1.0) as usize }
 }
 
 /// The rungs from the game alone upwards, the first with cross entropy and the others with least squares, each trained for `steps` of the game and nothing before it.
 pub fn rungs(steps: usize, quick: bool) -> Vec<Rung> {
-    let ours = small(quick);
+    let ours = small(TrainConfig::default(), quick);
     let bare = TrainConfig {
         conditional: false,
         beta: 0.0,

@@ -12,9 +12,6 @@ use crate::gan::TrainConfig;
 /// Seeds of each rung.
 const SEEDS: u64 = 3;
 
-/// Steps of such a net in a minute of one core.
-const STEPS_PER_MINUTE: f64 = 60.0;
-
 /// A net.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -46,7 +43,7 @@ pub struct Summary {
 /// Trains the nets and scores them. None stands for what another shard has.
 pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
     let quick = bench.quick;
-    let steps = ladder::steps(bench.minutes, STEPS_PER_MINUTE, quick);
+    let steps = ladder::steps(bench.minutes, quick);
     let rungs = rungs(steps, quick);
     // the other rungs follow from their names
     let made_with = (rungs[0].config.clone(), bench.data_set.is_some());

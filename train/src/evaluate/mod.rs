@@ -14,6 +14,7 @@ pub mod ladder;
 pub mod losses;
 pub mod net;
 pub mod noise;
+pub mod paper;
 pub mod rivals;
 pub mod score;
 pub mod shuffle;

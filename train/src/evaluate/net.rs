@@ -9,11 +9,10 @@ use burn::tensor::{Device, TensorData};
 use taut::{field, noise};
 
 use super::EvaluateError;
-use crate::export::{self, ExportMeta, TOKENS};
-use crate::gan::{Coding, TrainConfig, pin_map, weighted};
-use crate::nets::{CHANNELS, DESCRIPTION, FABRIC, GRID, Generator, NOISE};
+use crate::export::{self, ExportMeta};
+use crate::gan::{Coding, TrainConfig, described, known, pin_map, weighted};
+use crate::nets::{CHANNELS, FABRIC, GRID, Generator, NOISE};
 use crate::words::WordTable;
-use crate::words::tokens::{resolve, tokenize};
 
 /// A generator for inference with its words.
 pub struct Net {
@@ -66,15 +65,9 @@ impl Net {
     /// What it tells of a description; `pins` are particles of its own 32 x 32 grid, another seed is another piece of the
     /// fabric.
     pub fn tell(&self, description: &str, pins: &[usize], seed: u64) -> Result<Told, EvaluateError> {
-        let look = |w: &str| self.words.index(w);
-        let mut indices: Vec<usize> = tokenize(description).iter().flat_map(|w| resolve(w, &look).0).collect();
-        indices.truncate(TOKENS);
+        let indices = known(&self.words, description);
         if indices.is_empty() {
             return Err(EvaluateError::Part(format!("the generator knows no word of `{description}`")));
-        }
-        let mut sum = vec![0.0f32; DESCRIPTION];
-        for word in indices {
-            sum.iter_mut().zip(self.words.vector(word)).for_each(|(s, x)| *s += x);
         }
         let device = Device::flex();
         let row = |v: Vec<f32>| {
@@ -83,12 +76,9 @@ impl Net {
         };
         let z = (0..NOISE as u32).map(|i| noise::gaussian(seed, i)).collect();
         let pins = row(pin_map(pins)).reshape([1, 1, GRID, GRID]);
-        let out = self.generator.forward(row(sum), row(z), pins);
+        let out = self.generator.forward(row(described(&self.words, &indices)), row(z), pins);
         let read = |data: TensorData| data.try_into_vec::<f32>().map_err(|e| EvaluateError::Part(format!("{e:?}")));
-        let decode = |t: f32, coding: &Coding| {
-            let (offset, slope) = coding.line();
-            (offset + slope * f64::from(t)).exp() as f32
-        };
+        let decode = |t: f32, coding: &Coding| coding.decode(f64::from(t)) as f32;
         let field = read(out.field.into_data())?;
         let of_channel = |(i, t): (usize, &f32)| decode(*t, &self.codings.0[i / (GRID * GRID)]);
         let fabric = read(out.fabric.into_data())?;

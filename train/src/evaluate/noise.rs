@@ -5,15 +5,13 @@ use taut_lab::plot::{Axis, Chart, Mark};
 
 use super::ladder::{self, noisy};
 use super::net::Net;
+use super::paper::Paper;
 use super::score::SetScores;
 use super::table::{number, table};
 use super::{Bench, EvaluateError};
 
 /// The noise of the nets in percent of the range.
 const PERCENTS: [u32; 6] = [1, 2, 3, 4, 5, 6];
-
-/// Steps of such a net in a minute of one core, so that the figure does not depend on the machine.
-const STEPS_PER_MINUTE: f64 = 60.0;
 
 /// A net.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,10 +31,10 @@ pub struct Row {
 
 /// Trains the nets and scores them. None stands for what another shard has.
 pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
-    let steps = ladder::steps(bench.minutes, STEPS_PER_MINUTE, bench.quick);
+    let steps = ladder::steps(bench.minutes, bench.quick);
     let percents = if bench.quick { &PERCENTS[..2] } else { &PERCENTS };
     let quick = bench.quick;
-    let made_with = (noisy(0, steps, quick), bench.model.display().to_string(), bench.data_set.is_some());
+    let made_with = (noisy(0, steps, quick), bench.model_digest()?, bench.data_set.is_some());
     let jobs: Vec<Option<u32>> = percents.iter().copied().map(Some).chain([None]).collect();
     bench.rows(
         "7",
@@ -85,10 +83,19 @@ pub fn chart(rows: &[&Row]) -> Chart {
         |f: fn(&Row) -> f64| rows.iter().filter_map(|r| Some([f64::from(r.noise_pct?), f(r)])).collect::<Vec<_>>();
     let file = rows.iter().filter(|r| r.noise_pct.is_none()).map(|r| r.generated.psnr_db.mean);
     let file: Vec<[f64; 2]> = file.flat_map(|db| [[1.0, db], [6.0, db]]).collect();
+    let paper = Paper::default();
     Chart::new("Fig. 7: pictures under noise in training", Axis::linear("white noise in %"), Axis::linear("PSNR in dB"))
         .with("generated", Mark::Line, points(|r| r.generated.psnr_db.mean))
         .with("our file", Mark::Line, file)
         .with("uniform at the budget", Mark::Line, points(|r| r.uniform.psnr_db.mean))
-        .with("paper: above this below 4 %", Mark::Line, vec![[1.0, 33.5], [4.0, 33.5]])
-        .with("paper: below this above 4 %", Mark::Line, vec![[4.0, 31.4], [6.0, 31.4]])
+        .with(
+            "paper: above this below 4 %",
+            Mark::Line,
+            vec![[1.0, paper.psnr_below_4_pct_db], [4.0, paper.psnr_below_4_pct_db]],
+        )
+        .with(
+            "paper: below this above 4 %",
+            Mark::Line,
+            vec![[4.0, paper.psnr_above_4_pct_db], [6.0, paper.psnr_above_4_pct_db]],
+        )
 }

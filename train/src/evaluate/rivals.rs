@@ -1,7 +1,5 @@
 //! Fig. 9: the cloth with K from data, from a formula and from both GANs, and beside them what a game has.
 
-use std::fs;
-
 use serde::{Deserialize, Serialize};
 use taut_lab::compare::{self, Case, Limits, Model, Outcome, Setting};
 use taut_lab::fabric::Fabric;
@@ -15,16 +13,13 @@ use super::net::Net;
 use super::score::Scores;
 use super::table::{number, table};
 use super::{Bench, EvaluateError};
-use crate::gan::{StageSteps, TrainConfig};
+use crate::gan::{StageSteps, TrainConfig, write_whole};
 use crate::image::{RenderConfig, Renderer};
 use crate::nets::GRID;
 
 /// Particles of a side, and substeps of a frame of 60 Hz.
 const SIDE: usize = 32;
 const SUBSTEPS: u32 = 16;
-
-/// Steps of the paper's GAN in a minute of one core.
-const STEPS_PER_MINUTE: f64 = 60.0;
 
 /// The picture.
 pub const PICTURE: &str = "figure-9.png";
@@ -59,21 +54,10 @@ pub struct Row {
 
 /// The paper's recipe at the size of the other nets.
 pub fn paper(steps: usize, quick: bool) -> TrainConfig {
-    let small = small(quick);
     TrainConfig {
-        grid: small.grid,
-        reference: small.reference,
-        scenes: small.scenes,
-        held_out: small.held_out,
-        generator_width: small.generator_width,
-        discriminator_width: small.discriminator_width,
-        batch: small.batch,
-        fabrics: small.fabrics,
-        evaluation_fabrics: small.evaluation_fabrics,
-        learning_rate: small.learning_rate,
         steps: StageSteps { matching: 0, positions: 0, adversarial: steps },
         report_every: steps.div_ceil(2).max(1),
-        ..TrainConfig::paper()
+        ..small(TrainConfig::paper(), quick)
     }
 }
 
@@ -90,10 +74,10 @@ pub fn van_gelder(fabric: &Fabric) -> [f32; 4] {
 /// Runs all choices. None stands for what another shard has.
 pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
     let quick = bench.quick;
-    let config = paper(ladder::steps(bench.minutes, STEPS_PER_MINUTE, quick), quick);
+    let config = paper(ladder::steps(bench.minutes, quick), quick);
     let fabrics = if quick { &FABRICS[..1] } else { &FABRICS };
     let jobs: Vec<(&str, Scene)> = fabrics.iter().flat_map(|f| SCENES.map(|s| (*f, s))).collect();
-    let made_with = (&config, bench.model.display().to_string());
+    let made_with = (&config, bench.model_digest()?);
     bench.rows(
         "9",
         &made_with,
@@ -107,8 +91,7 @@ pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
             // the picture is of the first fabric in the first scene
             if (*words, *scene) == (FABRICS[0], SCENES[0]) {
                 let png = picture(words, *scene, side, &choices, &outcomes)?;
-                let path = bench.out.join(PICTURE);
-                fs::write(&path, png).map_err(|e| EvaluateError::Part(format!("{}: {e}", path.display())))?;
+                write_whole(&bench.out.join(PICTURE), &png)?;
             }
             Ok(Row { fabric: words.to_string(), scene: scene.to_string(), choices })
         },

@@ -102,7 +102,7 @@ fn jobs(quick: bool) -> Vec<Job> {
 /// Runs all. None stands for what another shard has.
 pub fn rows(bench: &mut Bench<'_>) -> Result<Vec<Option<Row>>, EvaluateError> {
     let net = Net::load(&bench.model)?;
-    let made_with = (bench.model.display().to_string(), SLACKS, super::held::SECONDS);
+    let made_with = (bench.model_digest()?, SLACKS, super::held::SECONDS);
     bench.rows(
         "unseen",
         &made_with,

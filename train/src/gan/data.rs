@@ -60,6 +60,12 @@ impl Coding {
         (2.0 * (value.ln() - self.low) / (self.high - self.low) - 1.0).clamp(-0.999, 0.999)
     }
 
+    /// From -1..1.
+    pub fn decode(&self, t: f64) -> f64 {
+        let (offset, slope) = self.line();
+        (offset + slope * t).exp()
+    }
+
     /// ln(value) = offset + slope t.
     pub fn line(&self) -> (f64, f64) {
         (0.5 * (self.low + self.high), 0.5 * (self.high - self.low))
@@ -172,13 +178,7 @@ impl Dataset {
 
     /// The description vector of some words: the sum of their vectors, [1024].
     pub fn describe(&self, words: &str) -> Vec<f32> {
-        let mut sum = vec![0.0f32; DESCRIPTION];
-        for word in self.indices(words) {
-            for (s, x) in sum.iter_mut().zip(self.words.vector(word)) {
-                *s += x;
-            }
-        }
-        sum
+        described(&self.words, &self.indices(words))
     }
 
     /// The known words of a text, at most 16, as the runtime takes them.
@@ -218,8 +218,19 @@ impl Dataset {
     }
 }
 
+/// The description vector of words of a table: the sum of their vectors, [1024].
+pub(crate) fn described(table: &WordTable, words: &[usize]) -> Vec<f32> {
+    let mut sum = vec![0.0f32; DESCRIPTION];
+    for word in words {
+        for (s, x) in sum.iter_mut().zip(table.vector(*word)) {
+            *s += x;
+        }
+    }
+    sum
+}
+
 /// The known words of a text, at most 16.
-fn known(table: &WordTable, words: &str) -> Vec<usize> {
+pub(crate) fn known(table: &WordTable, words: &str) -> Vec<usize> {
     let look = |w: &str| table.index(w);
     let mut out: Vec<usize> = tokenize(words).iter().flat_map(|w| resolve(w, &look).0).collect();
     out.truncate(crate::export::TOKENS);

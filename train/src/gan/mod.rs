@@ -22,8 +22,8 @@ mod trainer;
 
 pub use checkpoint::Checkpoint;
 pub use config::{ONE_MATRIX, Reference, StageSteps, TrainConfig};
-pub(crate) use data::weighted;
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
+pub(crate) use data::{described, known, weighted};
 pub use losses::{AdversarialLoss, Adversary, Ratings, weight_penalty};
 pub use program::{RunArgs, renderer, run, train_in};
 pub(crate) use program::{bar, write_whole};

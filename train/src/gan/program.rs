@@ -10,7 +10,9 @@ use taut_lab::plot::Figure;
 
 use super::{Checkpoint, Dataset, TrainConfig, TrainError, Trainer, plot};
 use crate::export;
+use crate::files;
 use crate::image::{RenderConfig, Renderer};
+use crate::stop::on_ctrl_c;
 use crate::words::{WordTable, WordsConfig, train_words};
 
 /// From nothing to a generator file.
@@ -43,10 +45,7 @@ pub fn run(args: &RunArgs) -> Result<(), TrainError> {
     let out = args.out.as_path();
     fs::create_dir_all(out).map_err(|e| TrainError::file(out, e))?;
 
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    // a second handler in one process is refused; then the first one's flag is not ours, and Ctrl-C simply ends it
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
+    let stop = on_ctrl_c();
 
     let words = word_table(args, out)?;
     let meta = config.meta()?;
@@ -97,6 +96,7 @@ pub fn train_in(
     if let Some(state) = state {
         trainer.resume(out, &state)?;
         best = state.best;
+        eprintln!("{name}: going on from step {}", trainer.step);
     }
     train(config, &mut trainer, &mut best, out, name, stop)?;
     let chosen = out.join("best.bpk");
@@ -229,7 +229,5 @@ pub(crate) fn bar(what: &str, length: u64) -> ProgressBar {
 
 /// Writes a file whole or not at all.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), TrainError> {
-    let new = path.with_extension("new");
-    fs::write(&new, bytes).map_err(|e| TrainError::file(&new, e))?;
-    fs::rename(&new, path).map_err(|e| TrainError::file(path, e))
+    files::write_whole(path, bytes).map_err(|e| TrainError::file(path, e))
 }

@@ -4,8 +4,7 @@ use std::fmt;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,6 +15,7 @@ use taut_lab::scene::Scene;
 
 use super::run::{Job, Row};
 use super::{MEASURED, Measured, ReferenceError, pictures};
+use crate::stop::on_ctrl_c;
 
 /// What counts as the same strain: a tenth of it or a tenth of a point; and as the same silhouette.
 const SAME_SHARE: f64 = 0.1;
@@ -145,10 +145,7 @@ pub fn run(args: &ReferenceArgs) -> Result<(), CommandError> {
     let header = Header { reference: 1, side: args.side, seed: args.seed, data: data.is_some() };
     let mut ledger: Ledger<Row> = Ledger::open(&args.out.join("rows.jsonl"), &header).map_err(CommandError::part)?;
 
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    // a second handler in one process is refused; then Ctrl-C simply ends it, and the ledger is whole at any time
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::SeqCst));
+    let stop = on_ctrl_c();
 
     let jobs: Vec<Job<'_>> = (scenes.iter())
         .flat_map(|&scene| fabrics.iter().map(move |&fabric| (scene, fabric)))
