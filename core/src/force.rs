@@ -126,11 +126,11 @@ pub(crate) fn three_rows(from: *mut f32, row: usize, stride: usize) -> [*mut f32
     [first, first.wrapping_add(stride), first.wrapping_add(stride.wrapping_mul(2))]
 }
 
-impl Pointers {
-    /// What a row takes and hands on.
+impl Carried {
+    /// What a row takes and hands on: places in [`crate::layout::CARRY_ROWS`] rows of carry.
     #[inline(always)]
-    pub fn carried(&self, row: usize, stride: usize) -> Carried {
-        let plane = |first: usize| three_rows(self.carry, first, stride);
+    pub fn new(carry: *mut f32, row: usize, stride: usize) -> Carried {
+        let plane = |first: usize| three_rows(carry, first, stride);
         let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
         Carried {
             below: plane(0),
@@ -375,7 +375,7 @@ pub(crate) unsafe fn sweep_row<V: Vector, const SHEAR: bool, const BEND: bool>(
 ) {
     let first = row.wrapping_mul(stride);
     let next_first = next_row.wrapping_mul(stride);
-    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = p.carried(row, stride);
+    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = Carried::new(p.carry, row, stride);
     let none = Three([zero; 3]);
     let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
     let mut column = 0;

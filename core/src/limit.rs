@@ -67,7 +67,8 @@ impl Reach {
     }
 }
 
-/// Numbers of the tables of [`Family`]: whichever lane holds the last link, 16 before it, 16 beyond, and a vector.
+/// Numbers of the tables of [`Family`]: whichever lane holds the last link, 16 before it, 16 beyond, and the
+/// two vectors that links along u are worked on in.
 const TABLE: usize = 64;
 
 /// The limits of the links that start side by side in a row: one for all but the last, another for that, none beyond.

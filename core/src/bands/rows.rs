@@ -51,7 +51,7 @@ impl Pass for Cross {
         }
         let k = Constants::new(zero, &self.0.constants);
         let n = self.0.columns.div_ceil(V::LANES) * V::LANES;
-        let carried = p.carried(first, stride);
+        let carried = Carried::new(p.carry, first, stride);
         let (last, last_but_one) = ((first - 1).wrapping_mul(stride), (first - 2).wrapping_mul(stride));
         let mut column = 0;
         while column < n {
@@ -155,7 +155,7 @@ unsafe fn edge_row<V: Vector, const SHEAR: bool, const BEND: bool, const LAST: b
     n: usize,
 ) {
     let first = row.wrapping_mul(stride);
-    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = p.carried(row, stride);
+    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = Carried::new(p.carry, row, stride);
     let none = Three([zero; 3]);
     let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
     let mut column = 0;

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // pointers into planes whose lengths are checked once a row: see `Row::new`
 
 use super::operator::Linear;
-use crate::force::{Planes, View};
+use crate::force::{Carried, Planes, View};
 use crate::layout::{CARRY_ROWS, Layout};
 use crate::simd::{Three, Vector, load};
 
@@ -85,9 +85,7 @@ pub(super) fn apply_row<V: Vector>(
         return;
     };
     let s = l.stride;
-    // 3 rows below, 3 lower left, 3 lower right of an even and of an odd row, 3 two below of each
-    let (this, other) = (row % 2 * 3, 3 - row % 2 * 3);
-    let place = |number: usize| number * s + 16;
+    let Carried { below, lower_left, lower_right, upper_left, two_below, .. } = Carried::new(p.carry, row, s);
     let none = Three([zero; 3]);
     let (mut before, mut bend_before, mut bend_before2) = (none, none, none);
     let mut at = 0;
@@ -109,25 +107,25 @@ pub(super) fn apply_row<V: Vector>(
             // and what ends there, handed on from rows above
             macro_rules! hand_on {
                 ($e:expr, $from:expr, $shift:expr, $to:expr) => {{
-                    let (e, from, to) = ($e, place($from).wrapping_add(at), place($to).wrapping_add(at));
-                    sum = sum.plus(e).minus(carried(zero, p.carry, from.wrapping_add_signed($shift), s));
-                    e.store(&[p.carry, p.carry.wrapping_add(s), p.carry.wrapping_add(2 * s)], to);
+                    let e = $e;
+                    sum = sum.plus(e).minus(Three::load(zero, &$from, at.wrapping_add_signed($shift)));
+                    e.store(&$to, at);
                 }};
             }
             let e = start!(0, 1);
             sum = sum.plus(e).minus(e.next1(before));
             before = e;
-            hand_on!(start!(1, s), 0, 0, 0);
+            hand_on!(start!(1, s), below, 0, below);
             if l.shear {
-                hand_on!(start!(2, s + 1), 6 + other, -1, 6 + this);
-                hand_on!(start!(3, s - 1), 3, 1, 3);
+                hand_on!(start!(2, s + 1), upper_left, -1, lower_right);
+                hand_on!(start!(3, s - 1), lower_left, 1, lower_left);
             }
             if l.bend {
                 let e = start!(4, 2);
                 sum = sum.plus(e).minus(e.next2(bend_before, bend_before2));
                 bend_before2 = bend_before;
                 bend_before = e;
-                hand_on!(start!(5, 2 * s), 12 + this, 0, 12 + this);
+                hand_on!(start!(5, 2 * s), two_below, 0, two_below);
             }
             sum.times(load(zero, p.free, at)).store(&p.image, at);
         }
@@ -142,14 +140,4 @@ unsafe fn load3<V: Vector>(zero: V, planes: &[*const f32; 3], at: usize) -> Thre
     let [x, y, z] = *planes;
     // SAFETY: the caller's promise.
     unsafe { Three([load(zero, x, at), load(zero, y, at), load(zero, z, at)]) }
-}
-
-/// Three rows of the carry from a place on.
-///
-/// # Safety
-/// The carry has them.
-#[inline(always)]
-unsafe fn carried<V: Vector>(zero: V, carry: *mut f32, at: usize, stride: usize) -> Three<V> {
-    // SAFETY: the caller's promise.
-    unsafe { Three([load(zero, carry, at), load(zero, carry, at + stride), load(zero, carry, at + 2 * stride)]) }
 }
