@@ -50,6 +50,25 @@ pub struct Case {
     pub seed: u64,
 }
 
+impl Case {
+    /// A fabric on a square metre, as many particles on each side, at 60 Hz with the tuned budget.
+    pub fn square(scene: Scene, fabric: &Fabric, side: u32, substeps: u32, seconds: f32) -> Case {
+        Case {
+            scene,
+            rows: side,
+            columns: side,
+            size_m: [1.0, 1.0],
+            rate_hz: 60.0,
+            substeps,
+            budget: Budget::Tuned,
+            density_kg_m2: fabric.density_kg_m2,
+            seconds,
+            hinge_rigidity_n_m: fabric.hinge_rigidity_n_m,
+            seed: 0,
+        }
+    }
+}
+
 /// A correction: where the stiffness comes from and whether the inertia field goes with it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use taut::{Budget, Error, Solver};
+use taut::{Error, Solver};
 
 use super::row::finite;
 use super::spec::{families_name, solver_name};
@@ -83,26 +83,16 @@ impl<'a> Bench<'a> {
     }
 
     fn case(&self, spec: &Spec, fabric: &Fabric) -> Case {
-        Case {
-            scene: spec.scene,
-            rows: spec.side,
-            columns: spec.side,
-            size_m: SIZE_M,
-            rate_hz: spec.rate_hz,
-            substeps: spec.substeps,
-            budget: Budget::Tuned,
-            density_kg_m2: fabric.density_kg_m2,
-            seconds: self.set.seconds(spec.scene),
-            hinge_rigidity_n_m: fabric.hinge_rigidity_n_m,
-            seed: SEED,
-        }
+        let seconds = self.set.seconds(spec.scene);
+        let square = Case::square(spec.scene, fabric, spec.side, spec.substeps, seconds);
+        Case { size_m: SIZE_M, rate_hz: spec.rate_hz, seed: SEED, ..square }
     }
 
     fn keep(&mut self, spec: &Spec, case: &Case, trace: &Trace) {
         if self.references.len() >= KEPT {
             self.references.clear();
         }
-        let strains = strains(case, &trace.positions);
+        let strains = fit::strains(case, &trace.positions);
         let reference = Reference { trace: trace.clone(), strains };
         self.references.insert((spec.scene, spec.fabric, spec.side), reference);
     }
@@ -129,20 +119,9 @@ impl<'a> Bench<'a> {
         let mut goals = Vec::new();
         for scene in [Scene::Hang2, Scene::Edge] {
             let goal = self.reference(scene, spec.fabric, spec.side)?.strains.clone();
-            goals.push((Spec { scene, limits: Limits::None, ..*spec }, goal));
+            goals.push((self.case(&Spec { scene, limits: Limits::None, ..*spec }, fabric), goal));
         }
-        // from the ratios 1, 1, 0.3 of a good analytic choice, as stiff as the fabric is
-        let [warp, weft, shear, _] = fabric.stiffness;
-        let found = fit::search([warp, weft, shear.max(0.15 * (warp + weft))], fit::TRIES, |k| {
-            let mut squares = 0.0;
-            for (spec, goal) in &goals {
-                let case = self.case(spec, fabric);
-                let outcome = run_model(&case, &Setting::DataDriven(k).into(), |_, _| ())?;
-                let found = strains(&case, &outcome.positions);
-                squares += found.iter().zip(goal).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            }
-            Ok(squares)
-        })?;
+        let found = fit::to_strains(fabric, &goals)?;
         self.fitted.insert(key, found);
         Ok(found)
     }
@@ -157,26 +136,6 @@ fn run(case: &Case, model: &Model) -> Result<(Trace, Outcome), Error> {
     let outcome = run_model(case, model, |cloth, frame| trace.take(case.scene, case.rate_hz, cloth, frame))?;
     trace.finish();
     Ok((trace, outcome))
-}
-
-/// Structural strains of a sheet in the order of its springs: of each row first those along u, then those along v.
-fn strains(case: &Case, positions: &[[f32; 3]]) -> Vec<f64> {
-    let (m, n) = (case.rows as usize, case.columns as usize);
-    let rest = [case.size_m[0] / (n - 1) as f32, case.size_m[1] / (m - 1) as f32].map(f64::from);
-    let length = |a: usize, b: usize| {
-        let squares = positions[a].iter().zip(&positions[b]).map(|(a, b)| f64::from(a - b).powi(2));
-        squares.sum::<f64>().sqrt()
-    };
-    let mut strains = Vec::with_capacity(2 * m * n);
-    for i in 0..positions.len() {
-        if i % n + 1 < n {
-            strains.push(length(i, i + 1) / rest[0] - 1.0);
-        }
-        if i / n + 1 < m {
-            strains.push(length(i, i + n) / rest[1] - 1.0);
-        }
-    }
-    strains
 }
 
 fn row(spec: &Spec, trace: &Trace, outcome: &Outcome, reference: &Trace, plain: f64) -> Row {
@@ -293,7 +252,7 @@ mod tests {
             told.clear();
             cloth.each_structural_strain(|_, _, s| told.push(f64::from(s)));
         });
-        let found = strains(&case, &outcome.unwrap().positions);
+        let found = fit::strains(&case, &outcome.unwrap().positions);
         assert_eq!(found.len(), told.len());
         assert!(found.iter().zip(&told).all(|(a, b)| (a - b).abs() < 1e-5));
     }

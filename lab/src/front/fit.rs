@@ -8,6 +8,9 @@
 
 use taut::Error;
 
+use crate::compare::{self, Case, Setting};
+use crate::fabric::Fabric;
+
 /// Tries of a fit, and how far the first ones go, as exponents of 2.
 pub const TRIES: u32 = 16;
 const FIRST: f32 = 1.0;
@@ -50,6 +53,40 @@ pub fn search(
     Ok(with_bend(best))
 }
 
+/// The three numbers of a fabric that come nearest to the structural strains of some cases. The search starts at the ratios 1,
+/// 1, 0.3 of a good analytic choice, as stiff as the fabric is.
+pub fn to_strains(fabric: &Fabric, goals: &[(Case, Vec<f64>)]) -> Result<[f32; 4], Error> {
+    let [warp, weft, shear, _] = fabric.stiffness;
+    search([warp, weft, shear.max(0.15 * (warp + weft))], TRIES, |k| {
+        let mut squares = 0.0;
+        for (case, goal) in goals {
+            let outcome = compare::run(case, &Setting::DataDriven(k), |_| ())?;
+            squares += strains(case, &outcome.positions).iter().zip(goal).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        }
+        Ok(squares)
+    })
+}
+
+/// Structural strains of a sheet in the order of its springs: of each row first those along u, then those along v.
+pub fn strains(case: &Case, positions: &[[f32; 3]]) -> Vec<f64> {
+    let (m, n) = (case.rows as usize, case.columns as usize);
+    let rest = [case.size_m[0] / (n - 1) as f32, case.size_m[1] / (m - 1) as f32].map(f64::from);
+    let length = |a: usize, b: usize| {
+        let squares = positions[a].iter().zip(&positions[b]).map(|(a, b)| f64::from(a - b).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let mut strains = Vec::with_capacity(2 * m * n);
+    for i in 0..positions.len() {
+        if i % n + 1 < n {
+            strains.push(length(i, i + 1) / rest[0] - 1.0);
+        }
+        if i / n + 1 < m {
+            strains.push(length(i, i + n) / rest[1] - 1.0);
+        }
+    }
+    strains
+}
+
 fn with_bend([warp, weft, shear]: [f32; 3]) -> [f32; 4] {
     [warp, weft, shear, taut::BEND_SHARE * 0.5 * (warp + weft)]
 }
@@ -57,6 +94,7 @@ fn with_bend([warp, weft, shear]: [f32; 3]) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     #[test]
     fn the_search_finds_the_bottom_of_a_bowl() {
@@ -78,5 +116,15 @@ mod tests {
     fn what_blows_up_is_not_chosen() {
         let off = |k: [f32; 4]| Ok(if k[0] > 10.0 { f64::NAN } else { f64::from(11.0 - k[0]) });
         assert!(search([8.0, 8.0, 8.0], 20, off).unwrap()[0] <= 10.0);
+    }
+
+    #[test]
+    fn strains_of_a_stretched_sheet() {
+        let case = Case::square(Scene::Edge, &Fabric::named("denim").unwrap(), 3, 16, 1.0);
+        let x: Vec<[f32; 3]> = (0..9).map(|i| [0.55 * (i % 3) as f32, -0.5 * (i / 3) as f32, 0.0]).collect();
+        let s = strains(&case, &x);
+        assert_eq!(s.len(), 12);
+        let along_u: Vec<&f64> = s.iter().filter(|e| (**e - 0.1).abs() < 1e-6).collect();
+        assert_eq!((along_u.len(), s.iter().filter(|e| e.abs() < 1e-6).count()), (6, 6));
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use burn::Tensor;
 use burn::tensor::{Device, TensorData};
-use taut::Budget;
 use taut_lab::compare::{self, Case, Setting};
 use taut_lab::fabric::{self, Fabric, KINDS};
 use taut_lab::scene::Scene;
@@ -13,9 +12,9 @@ use taut_lab::scene::Scene;
 use super::EvaluateError;
 use super::net::Net;
 use super::score::Scores;
-use crate::cloth::{self, SceneDef, Springs, equilibrium};
+use crate::cloth::{Springs, equilibrium};
 use crate::data::{self, Sample, Split};
-use crate::gan::TrainConfig;
+use crate::gan::{TrainConfig, hanging};
 use crate::image::Renderer;
 use crate::nets::init::SplitMix64;
 use crate::nets::{CHANNELS, GRID};
@@ -57,19 +56,7 @@ pub fn fabrics(count: usize) -> Vec<Held> {
 
 /// A case of a held fabric.
 pub fn case(scene: Scene, fabric: &Fabric, side: usize, substeps: u32) -> Case {
-    Case {
-        scene,
-        rows: side as u32,
-        columns: side as u32,
-        size_m: [1.0, 1.0],
-        rate_hz: 60.0,
-        substeps,
-        budget: Budget::Tuned,
-        density_kg_m2: fabric.density_kg_m2,
-        seconds: SECONDS,
-        hinge_rigidity_n_m: fabric.hinge_rigidity_n_m,
-        seed: 0,
-    }
+    Case::square(scene, fabric, side as u32, substeps, SECONDS)
 }
 
 /// A picture that a net is asked for.
@@ -174,16 +161,8 @@ impl TestSet {
         let g = self.grid;
         let springs = Arc::new(Springs::new(g, g, 1.0, 1.0).map_err(EvaluateError::part)?);
         let one = |(i, item): (usize, &Item)| {
-            let def = SceneDef {
-                density_kg_m2: f64::from(item.held.fabric.density_kg_m2),
-                dt_s: 1.0 / (60.0 * f64::from(self.substeps)),
-                ..SceneDef::hung(&springs, &item.pins)
-            };
-            let inertia_radius_m = if inertia { def.inertia_radius_m } else { 0.0 };
-            let def = SceneDef { inertia_radius_m, ..def };
-            let mut cloth = cloth::Scene::new(&springs, def).map_err(EvaluateError::part)?;
-            let start = item.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
-            cloth.set_start(Some(start)).map_err(EvaluateError::part)?;
+            let cloth = hanging(&springs, &item.held.fabric, (self.substeps, inertia), &item.pins, &item.positions);
+            let mut cloth = cloth.map_err(EvaluateError::part)?;
             let field = TensorData::new(field(i, item)?, [1, CHANNELS, g, g]);
             let x = equilibrium(Tensor::from_data(field, &Device::flex()), std::slice::from_mut(&mut cloth));
             let x = x.map_err(EvaluateError::part)?.into_data().try_into_vec::<f32>();

@@ -159,35 +159,16 @@ fn run(case: &Case, model: &Model) -> Result<Outcome, EvaluateError> {
 }
 
 /// Three numbers for the whole sheet that come nearest to the reference's strains in both scenes, in the least-squares sense
-/// (Lloyd's first class): a search of 16 tries from the fabric's own.
+/// (Lloyd's first class).
 fn fitted(fabric: &Fabric, side: usize) -> Result<[f32; 4], EvaluateError> {
     let goals = SCENES.map(|scene| {
         let case = case(scene, fabric, side, SUBSTEPS);
-        let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ());
-        outcome.map(|o| (case, strains(&o.positions, side)))
+        let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ())?;
+        let goal = fit::strains(&case, &outcome.positions);
+        Ok((case, goal))
     });
-    let goals = goals.into_iter().collect::<Result<Vec<_>, _>>().map_err(EvaluateError::part)?;
-    let [warp, weft, shear, _] = fabric.stiffness;
-    let found = fit::search([warp, weft, shear.max(0.15 * (warp + weft))], fit::TRIES, |k| {
-        let mut squares = 0.0;
-        for (case, goal) in &goals {
-            let outcome = compare::run(case, &Setting::DataDriven(k), |_| ())?;
-            squares += strains(&outcome.positions, side).iter().zip(goal).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        }
-        Ok(squares)
-    });
-    found.map_err(EvaluateError::part)
-}
-
-/// Structural strains of a square metre, along u and along v.
-fn strains(x: &[[f32; 3]], side: usize) -> Vec<f64> {
-    let rest = 1.0 / (side - 1) as f64;
-    let strain = |a: usize, b: usize| {
-        let squares = (0..3).map(|i| f64::from(x[a][i] - x[b][i]).powi(2));
-        squares.sum::<f64>().sqrt() / rest - 1.0
-    };
-    let along_u = (0..side * side).filter(|i| i % side + 1 < side).map(|i| strain(i, i + 1));
-    along_u.chain((0..side * (side - 1)).map(|i| strain(i, i + side))).collect()
+    let goals = goals.into_iter().collect::<Result<Vec<_>, taut::Error>>();
+    goals.and_then(|goals| fit::to_strains(fabric, &goals)).map_err(EvaluateError::part)
 }
 
 fn picture(
@@ -261,13 +242,5 @@ mod tests {
         assert!(config.one_matrix && !config.inertia && !config.pins && !config.conditional && !config.levels);
         assert_eq!((config.alpha, config.beta, config.paired, config.prior), (theirs.alpha, theirs.beta, 0.0, 0.0));
         assert_eq!(config.substeps, theirs.substeps);
-    }
-
-    #[test]
-    fn strains_of_a_stretched_sheet() {
-        let x: Vec<[f32; 3]> = (0..9).map(|i| [0.55 * (i % 3) as f32, -0.5 * (i / 3) as f32, 0.0]).collect();
-        let s = strains(&x, 3);
-        assert_eq!(s.len(), 12);
-        assert!(s[..6].iter().all(|e| (e - 0.1).abs() < 1e-6) && s[6..].iter().all(|e| e.abs() < 1e-6));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use taut::{Budget, noise};
+use taut::noise;
 use taut_lab::compare::{self, Case, Setting};
 use taut_lab::fabric::{self, Fabric, KINDS};
 
@@ -295,21 +295,11 @@ fn example(
         },
     };
     let springs = Arc::new(Springs::new(config.grid, config.grid, 1.0, 1.0).map_err(TrainError::part)?);
-    let start: Vec<[f64; 3]> = reference.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect();
     let cloths = config
         .substeps
         .iter()
         .map(|substeps| {
-            let def = SceneDef {
-                density_kg_m2: f64::from(fabric.density_kg_m2),
-                dt_s: 1.0 / (60.0 * f64::from(*substeps)),
-                ..SceneDef::hung(&springs, &scene.pins(config.grid, draw))
-            };
-            let inertia_radius_m = if config.inertia { def.inertia_radius_m } else { 0.0 };
-            let def = SceneDef { inertia_radius_m, ..def };
-            let mut cloth = cloth::Scene::new(&springs, def)?;
-            cloth.set_start(Some(start.clone()))?;
-            Ok(cloth)
+            hanging(&springs, fabric, (*substeps, config.inertia), &scene.pins(config.grid, draw), &reference)
         })
         .collect::<Result<Vec<_>, cloth::ClothError>>()
         .map_err(TrainError::part)?;
@@ -317,22 +307,31 @@ fn example(
     Ok(Some(Example { words: words.to_string(), fabric: fabric.clone(), scene, draw, reference, picture, cloths }))
 }
 
+/// The differentiable cloth of a fabric at so many substeps of a 60 Hz frame, with the inertia field or without. The search for
+/// its shape at rest begins at `start`, `[particle][axis]` in m.
+pub(crate) fn hanging(
+    springs: &Arc<Springs>,
+    fabric: &Fabric,
+    (substeps, inertia): (u32, bool),
+    pins: &[usize],
+    start: &[f32],
+) -> Result<cloth::Scene, cloth::ClothError> {
+    let hung = SceneDef::hung(springs, pins);
+    let def = SceneDef {
+        density_kg_m2: f64::from(fabric.density_kg_m2),
+        dt_s: 1.0 / (60.0 * f64::from(substeps)),
+        inertia_radius_m: if inertia { hung.inertia_radius_m } else { 0.0 },
+        ..hung
+    };
+    let mut cloth = cloth::Scene::new(springs, def)?;
+    cloth.set_start(Some(start.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect()))?;
+    Ok(cloth)
+}
+
 /// The reference cloth: core itself at the physical stiffness, with as many substeps as the budget needs to cut nothing,
 /// stepped to rest: the same that the program shows as the reference.
 fn reference(n: usize, fabric: &Fabric, scene: Scene) -> Result<Vec<f32>, TrainError> {
-    let case = Case {
-        scene: scene.lab(),
-        rows: n as u32,
-        columns: n as u32,
-        size_m: [1.0, 1.0],
-        rate_hz: 60.0,
-        substeps: 16,
-        budget: Budget::Tuned,
-        density_kg_m2: fabric.density_kg_m2,
-        seconds: REFERENCE_SECONDS,
-        hinge_rigidity_n_m: fabric.hinge_rigidity_n_m,
-        seed: 0,
-    };
+    let case = Case::square(scene.lab(), fabric, n as u32, 16, REFERENCE_SECONDS);
     let outcome = compare::run(&case, &Setting::Reference(fabric.clone()), |_| ()).map_err(TrainError::part)?;
     Ok(outcome.positions.into_flattened())
 }

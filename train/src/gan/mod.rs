@@ -16,6 +16,8 @@ mod data;
 mod gradient;
 mod head;
 mod losses;
+mod measure;
+mod pins;
 mod plot;
 mod program;
 mod trainer;
@@ -23,11 +25,12 @@ mod trainer;
 pub use checkpoint::Checkpoint;
 pub use config::{ONE_MATRIX, Reference, StageSteps, TrainConfig};
 pub use data::{Coding, Dataset, Example, corrected_stiffness};
-pub(crate) use data::{described, known, weighted};
+pub(crate) use data::{described, hanging, known, weighted};
 pub use losses::{AdversarialLoss, Adversary, Ratings, weight_penalty};
+pub use pins::pin_map;
 pub use program::{RunArgs, renderer, run, train_in};
 pub(crate) use program::{bar, write_whole};
-pub use trainer::{Score, Stage, Trainer, pin_map};
+pub use trainer::{Score, Stage, Trainer};
 
 use std::fmt;
 
