@@ -1,7 +1,7 @@
 //! `taut plan`: which settings a scene requires, and why.
 
 use serde::Serialize;
-use taut::plan::{METHODS, Method, Plan, PlanDef, PlanStiffness, plan, plan_of};
+use taut::plan::{Hold, METHODS, Method, Plan, PlanDef, PlanStiffness, plan, plan_of};
 use taut::{Families, Features, Grid, GridDef, Solver};
 use taut_lab::distill::hold_of;
 use taut_lab::fabric::Fabric;
@@ -60,8 +60,10 @@ pub fn run(args: &args::Plan) -> Result<(), Failure> {
     let chosen = plan(&grid, &def).map_err(Failure::new)?;
     let others = METHODS
         .into_iter()
-        .map(|m| Ok((m, plan_of(&grid, &def, m).map_err(Failure::new)?)))
+        .map(|m| Ok((m, plan_of(&grid, &def, m, None).map_err(Failure::new)?)))
         .collect::<Result<Vec<_>, Failure>>()?;
+    let bend = chosen.families.contains(Families::BEND);
+    let other_bend = plan_of(&grid, &def, method(&chosen), Some(!bend)).map_err(Failure::new)?;
     let settings = Settings {
         scene: args.scene.name(),
         fabric: fabric.kind,
@@ -84,7 +86,7 @@ pub fn run(args: &args::Plan) -> Result<(), Failure> {
         strain_limit: chosen.features.contains(Features::LEVELS).then_some(chosen.limit),
         stretch_pct: 100.0 * chosen.strain,
         us_per_frame: 1e-3 * chosen.frame_ns,
-        why: why(args, &def, &chosen, &others),
+        why: why(args, &def, &chosen, &others, other_bend.as_ref()),
     };
     if args.json {
         return failure::print(&(serde_json::to_string_pretty(&settings).map_err(Failure::new)? + "\n"));
@@ -125,7 +127,13 @@ fn name(method: Method) -> &'static str {
 }
 
 /// Why a plan is as it is, a sentence for each choice.
-fn why(args: &args::Plan, def: &PlanDef, chosen: &Plan, others: &[(Method, Option<Plan>)]) -> Vec<String> {
+fn why(
+    args: &args::Plan,
+    def: &PlanDef,
+    chosen: &Plan,
+    others: &[(Method, Option<Plan>)],
+    other_bend: Option<&Plan>,
+) -> Vec<String> {
     let pct = |x: f32| format!("{:.2} %", 100.0 * x);
     let us = |p: &Plan| format!("{:.0} us", 1e-3 * p.frame_ns);
     let mut why = Vec::new();
@@ -153,7 +161,7 @@ fn why(args: &args::Plan, def: &PlanDef, chosen: &Plan, others: &[(Method, Optio
     for (other, best) in others.iter().filter(|(m, _)| *m != method(chosen)) {
         let what = name(*other);
         why.push(match best {
-            None if matches!(other, Method::Inertia | Method::Tethers) && chosen.families.contains(Families::BEND) => {
+            None if matches!(other, Method::Inertia | Method::Tethers) && def.hold == Hold::Loose => {
                 format!("{what} off: there is no pin that it could act from, or it does not fit your time")
             }
             None => format!("{what} off: it does not fit your time, or was not measured at this tolerance"),
@@ -164,15 +172,25 @@ fn why(args: &args::Plan, def: &PlanDef, chosen: &Plan, others: &[(Method, Optio
             Some(p) => format!("{what} off: it stretches by {} even with {}", pct(p.strain), substeps(p.substeps)),
         });
     }
-    why.push(if chosen.families.contains(Families::BEND) {
-        "bend on: what lies or hangs by one point would crumple without".into()
-    } else if chosen.meets {
-        format!(
-            "bend off: the scene ({about}) unfolds by its weight, and stretches {} less than your tolerance without",
-            pct(left)
-        )
+    let bend = if chosen.families.contains(Families::BEND) {
+        ["on", "without bend springs"]
     } else {
-        format!("bend off: the scene ({about}) unfolds by its weight")
+        ["off", "with bend springs"]
+    };
+    why.push(match other_bend {
+        None => format!("bend {}: {} it does not fit your time", bend[0], bend[1]),
+        Some(p) if !p.meets => {
+            format!("bend {}: {} it stretches by {} even with {}", bend[0], bend[1], pct(p.strain), substeps(p.substeps))
+        }
+        Some(p) => format!(
+            "bend {}: the scene ({about}) keeps {} to your tolerance as it is; {} it needs {}, stretches by {} and takes {:.2} times the time",
+            bend[0],
+            pct(left),
+            bend[1],
+            substeps(p.substeps),
+            pct(p.strain),
+            p.frame_ns / chosen.frame_ns
+        ),
     });
     why
 }

@@ -26,13 +26,15 @@ pub enum Hold {
     Corners = 2,
     /// One particle is pinned.
     Corner = 3,
-    /// Nothing is pinned, or an area: it lies on something.
+    /// Nothing is pinned: it lies on something.
     Loose = 4,
+    /// An area in its middle is pinned, and the rest hangs over: a cloth clamped to a table.
+    Area = 5,
 }
 
 impl Hold {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Hold; 5] = [Hold::Edge, Hold::Hooks, Hold::Corners, Hold::Corner, Hold::Loose];
+    pub const ALL: [Hold; 6] = [Hold::Edge, Hold::Hooks, Hold::Corners, Hold::Corner, Hold::Loose, Hold::Area];
 }
 
 /// What is to be planned.
@@ -102,7 +104,8 @@ pub struct Plan {
     pub limit: f32,
     /// Largest strain to expect at rest, the margin of the law counted in.
     pub strain: f32,
-    /// CPU time to expect of a frame in ns.
+    /// CPU time to expect of a frame in ns, with what such scenes mostly need beside: a collider and hinges where a sheet lies on
+    /// something.
     pub frame_ns: f32,
     /// Whether `strain` is within the tolerance; else this is the best that fits the time.
     pub meets: bool,
@@ -159,8 +162,8 @@ struct FabricLaw {
     margin: f32,
 }
 
-/// Cost of a substep in plain steps (all families, no features), with the families that the plan keeps: constant + grid / n +
-/// step / substeps.
+/// Cost of a substep of a padded particle in plain steps (all families, no features), with the families of [`Bend::kept`] and what scenes of the hold
+/// need beside (a collider and hinges where a sheet lies on something): constant + grid / n + step / substeps.
 #[derive(Clone, Copy, Debug)]
 struct Price {
     constant: f32,
@@ -168,9 +171,21 @@ struct Price {
     step: f32,
 }
 
+/// What bend springs do.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// Whether the rows have them.
+    kept: bool,
+    /// What is added to ln of the strain with the other choice, that of a row in four being more.
+    ln_strain: f32,
+    /// What the other choice adds to the cost of a substep, in plain steps.
+    price: f32,
+}
+
 /// What was measured of a hold.
 #[derive(Clone, Copy, Debug)]
 struct Row {
+    bend: Bend,
     plain: Strains,
     inertia: Strains,
     tethers: Strains,
@@ -179,6 +194,8 @@ struct Row {
     plain_price: Price,
     tethers_price: Price,
     levels_price: Price,
+    /// How far above their limit levels let a sheet stretch at rest: what lies on something is pushed out last.
+    levels_over: f32,
     implicit_price: Price,
 }
 
@@ -207,32 +224,32 @@ pub fn plan(grid: &Grid, def: &PlanDef) -> Result<Plan, Error> {
         check(def)?;
         let mut best: Option<Plan> = None;
         for method in METHODS {
-            if let Some(next) = of_method(grid, def, method)
-                && best.is_none_or(|b| better(&next, &b))
-            {
-                best = Some(next);
-            }
+            best = better(best, of_method(grid, def, method, None));
         }
         best.ok_or(Error::NoPlan)
     })
 }
 
 /// The best plan of one method, or None where it does not fit the time or cannot be done: what a caller compares to see why
-/// [`plan`] chose as it did. Errors: those of [`plan`] but for `NoPlan`.
-pub fn plan_of(grid: &Grid, def: &PlanDef, method: Method) -> Result<Option<Plan>, Error> {
+/// [`plan`] chose as it did. `bend` asks for one with bend springs or without, None for the better of both. Errors: those of
+/// [`plan`] but for `NoPlan`.
+pub fn plan_of(grid: &Grid, def: &PlanDef, method: Method, bend: Option<bool>) -> Result<Option<Plan>, Error> {
     in_default_environment(|| {
         check(def)?;
-        Ok(of_method(grid, def, method))
+        Ok(of_method(grid, def, method, bend))
     })
 }
 
-/// What meets the tolerance beats what does not; then the cheaper, or else the less strained one.
-fn better(a: &Plan, b: &Plan) -> bool {
-    match (a.meets, b.meets) {
-        (true, true) => a.frame_ns < b.frame_ns,
-        (false, false) => a.strain < b.strain,
-        (a, _) => a,
-    }
+/// What meets the tolerance beats what does not; then the cheaper, or else the less strained one. The first where both are
+/// alike.
+fn better(a: Option<Plan>, b: Option<Plan>) -> Option<Plan> {
+    let (Some(x), Some(y)) = (a, b) else { return a.or(b) };
+    let second = match (x.meets, y.meets) {
+        (true, true) => y.frame_ns < x.frame_ns,
+        (false, false) => y.strain < x.strain,
+        (_, y) => y,
+    };
+    if second { b } else { a }
 }
 
 fn check(def: &PlanDef) -> Result<(), Error> {
@@ -255,6 +272,22 @@ fn check(def: &PlanDef) -> Result<(), Error> {
     if within { Ok(()) } else { Err(Error::OutOfRange) }
 }
 
+fn of_method(grid: &Grid, def: &PlanDef, method: Method, bend: Option<bool>) -> Option<Plan> {
+    let g = grid.def();
+    let row = table::ROWS.get(def.hold as usize)?;
+    let can_bend = g.families.contains(Families::BEND);
+    let mut best = None;
+    for with in [row.bend.kept, !row.bend.kept] {
+        if bend.unwrap_or(with) != with || (with && !can_bend) {
+            continue;
+        }
+        let families = if with { g.families } else { Families(g.families.0 & !Families::BEND.0) };
+        let cells = (g.rows.max(g.columns) - 1) as f32;
+        best = better(best, Sheet { grid, def, row, side: max(g.width_m, g.height_m), cells, families }.of(method));
+    }
+    best
+}
+
 /// A sheet as the laws see it.
 struct Sheet<'a> {
     grid: &'a Grid,
@@ -266,30 +299,24 @@ struct Sheet<'a> {
     families: Families,
 }
 
-fn of_method(grid: &Grid, def: &PlanDef, method: Method) -> Option<Plan> {
-    let g = grid.def();
-    let row = table::ROWS.get(def.hold as usize)?;
-    let cells = g.rows.max(g.columns) - 1;
-    // what hangs unfolds by its weight; what lies, or hangs by a point, would crumple without bend springs
-    let bends = matches!(def.hold, Hold::Corner | Hold::Loose);
-    let families = if bends { g.families } else { Families(g.families.0 & !Families::BEND.0) };
-    let sheet = Sheet { grid, def, row, side: max(g.width_m, g.height_m), cells: cells as f32, families };
-    let mut last = None;
-    for substeps in 1..=MOST {
-        let Some(next) = sheet.at(method, substeps) else { continue };
-        if next.frame_ns > def.budget_ns {
-            break;
-        }
-        last = Some(next);
-        // more substeps change nothing where the stiffness is the fabric's
-        if next.meets || matches!(method, Method::Whole | Method::Implicit) {
-            break;
-        }
-    }
-    last
-}
-
 impl Sheet<'_> {
+    /// The fewest substeps that meet the tolerance, else the most that fit the time.
+    fn of(&self, method: Method) -> Option<Plan> {
+        let mut last = None;
+        for substeps in 1..=MOST {
+            let Some(next) = self.at(method, substeps) else { continue };
+            if next.frame_ns > self.def.budget_ns {
+                break;
+            }
+            last = Some(next);
+            // more substeps change nothing where the stiffness is the fabric's
+            if next.meets || matches!(method, Method::Whole | Method::Implicit) {
+                break;
+            }
+        }
+        last
+    }
+
     /// What to expect of a method with so many substeps; None where it cannot be done.
     fn at(&self, method: Method, substeps: u32) -> Option<Plan> {
         let row = self.row;
@@ -308,12 +335,12 @@ impl Sheet<'_> {
                 (self.by_step(&row.tethers, substeps), row.tethers_price)
             }
             Method::Levels => {
-                if tolerance < LEAST_LIMIT {
+                features = Features::LEVELS;
+                limit = AIM * (tolerance - row.levels_over);
+                if limit < AIM * LEAST_LIMIT {
                     return None;
                 }
-                features = Features::LEVELS;
-                limit = AIM * tolerance;
-                (limit, row.levels_price)
+                (limit + row.levels_over, row.levels_price)
             }
             Method::Whole => {
                 if substeps < self.whole_substeps() {
@@ -334,8 +361,13 @@ impl Sheet<'_> {
         if self.def.hold == Hold::Loose && matches!(method, Method::Tethers | Method::Inertia) {
             return None;
         }
-        let steps = self.grid.particles() as f32 * substeps as f32;
-        let price = max(price.constant + price.grid / self.cells + price.step / substeps as f32, LEAST_PRICE);
+        let as_measured = self.families.contains(Families::BEND) == row.bend.kept;
+        let (factor, more) = if as_measured { (1.0, 0.0) } else { (libm::expf(row.bend.ln_strain), row.bend.price) };
+        // levels end at their limit with any springs
+        let strain = if method == Method::Levels { strain } else { min(strain * factor, f32::MAX) };
+        // a pass works on whole vectors of 16
+        let padded = self.grid.def().rows as f32 * self.grid.def().columns.next_multiple_of(16) as f32;
+        let price = max(price.constant + price.grid / self.cells + price.step / substeps as f32 + more, LEAST_PRICE);
         Some(Plan {
             solver,
             substeps,
@@ -346,7 +378,7 @@ impl Sheet<'_> {
             inertia_radius_m: radius,
             limit,
             strain,
-            frame_ns: steps * price * self.def.plain_ns,
+            frame_ns: padded * substeps as f32 * price * self.def.plain_ns,
             meets: strain <= tolerance,
         })
     }
@@ -444,7 +476,7 @@ mod tests {
             for tolerance in [0.3, 0.05, 0.001] {
                 for method in METHODS {
                     let def = PlanDef { hold, tolerance, ..PlanDef::default() };
-                    if let Some(p) = plan_of(&grid(32), &def, method).unwrap() {
+                    if let Some(p) = plan_of(&grid(32), &def, method, None).unwrap() {
                         assert_eq!(p.fit(&ClothDef::default()).check(), Ok(()), "{p:?}");
                     }
                 }

@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let argument = std::env::args().nth(1);
     if argument.as_deref() != Some("--table") {
         let path = argument.map_or_else(|| std::env::temp_dir().join("taut-distill.jsonl"), PathBuf::from);
-        let mut ledger: Ledger<Row> = Ledger::open(&path, &"distill 1")?;
+        let mut ledger: Ledger<Row> = Ledger::open(&path, &"distill 2")?;
         let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };
         let mut bench = Bench::new(Set::Quick, &mut none);
         let list = distill::list();

@@ -3,34 +3,34 @@
 //! The rows are in `lab/data/plan.csv`. The example `distill` measures them anew and writes both files; a test compares the
 //! table with what [`table`] makes of the rows.
 
+mod table;
+
 use std::fmt::Write;
 
 use taut::plan::{Hold, Method, PlanDef, plan_of};
-use taut::{Grid, GridDef, Solver};
+use taut::{Families, Grid, GridDef, Solver};
 
 use crate::compare::Limits;
 use crate::fabric::Fabric;
 use crate::front::{Correction, NO_BEND, Row, Spec};
 use crate::scene::Scene;
 
+pub use table::table;
+
 /// The fabrics that the laws of K as it is are fitted to; the strains of a stiffest cloth are those of the first.
 pub const FABRICS: [&str; 7] = ["denim", "polyester tablecloth", "cotton jersey", "rib knit", "silk", "canvas", "felt"];
 
-/// Sides that the table is made from.
-pub const SIDES: [u32; 3] = [16, 32, 64];
+/// Sides that strains are looked up between, half an octave of cells apart.
+pub const SIDES: [u32; 7] = [16, 22, 32, 45, 64, 90, 128];
 
-/// Strains whose neighbours decide about margins: below it is noise, above it nobody wants it.
-const RANGE: std::ops::RangeInclusive<f64> = 0.001..=0.4;
+/// Sides that the laws of K as it is, of prices and of bend springs are fitted to.
+const LAW_SIDES: [u32; 3] = [16, 32, 64];
 
-/// The strain that stands where a row blew up.
-const BLOWN: f64 = 2.0;
+/// Substeps with which bend springs are tried the other way.
+const BEND_SUBSTEPS: [u32; 3] = [8, 16, 32];
 
-/// The least margin.
-const LEAST_MARGIN: f64 = 0.03;
-
-/// Gravity of the rows in m/s^2, and the side of their sheets in m.
-const GRAVITY: f64 = 9.81;
-const SIDE_M: f64 = 1.0;
+/// The limit of the rows with levels.
+pub(crate) const LEVELS: f64 = 0.05;
 
 /// The scene that stands for a hold.
 pub fn scene_of(hold: Hold) -> Scene {
@@ -40,6 +40,7 @@ pub fn scene_of(hold: Hold) -> Scene {
         Hold::Corners => Scene::Hang2,
         Hold::Corner => Scene::Hang1,
         Hold::Loose => Scene::Drape,
+        Hold::Area => Scene::Cusick,
     }
 }
 
@@ -50,7 +51,8 @@ pub fn hold_of(scene: Scene) -> Hold {
         Scene::Curtain => Hold::Hooks,
         Scene::Hang2 => Hold::Corners,
         Scene::Hang1 => Hold::Corner,
-        Scene::Drape | Scene::Cusick => Hold::Loose,
+        Scene::Drape => Hold::Loose,
+        Scene::Cusick => Hold::Area,
     }
 }
 
@@ -59,7 +61,8 @@ pub fn hold_of(scene: Scene) -> Hold {
 pub struct Point {
     /// The hold.
     pub hold: Hold,
-    /// plain, inertia, tethers, levels or implicit.
+    /// plain, inertia, tethers, levels, whole, implicit, or bend: plain with bend springs where the others have none, and without
+    /// where they have.
     pub method: String,
     /// Particles of a side.
     pub side: u32,
@@ -80,6 +83,13 @@ pub fn list() -> Vec<(Hold, &'static str, Spec)> {
         let scene = scene_of(hold);
         for side in SIDES {
             rows.extend(methods(hold, scene, side, FABRICS[0]));
+            if !LAW_SIDES.contains(&side) {
+                continue;
+            }
+            for substeps in BEND_SUBSTEPS {
+                let plain = families(hold, Spec::new(scene, FABRICS[0], side, Correction::Uniform));
+                rows.push((hold, "bend", Spec { substeps, families: other(plain.families), ..plain }));
+            }
             // where weight over stiffness is small for all of them, fewer tell as much
             let fabrics = if side == 64 { &FABRICS[..3] } else { &FABRICS[..] };
             for fabric in fabrics {
@@ -91,8 +101,19 @@ pub fn list() -> Vec<(Hold, &'static str, Spec)> {
     rows
 }
 
+/// Whether the rows of a hold have bend springs: where a sheet lies on something they take a third to a half off its strain,
+/// where it hangs a twentieth.
+pub(crate) fn bends(hold: Hold) -> bool {
+    matches!(hold, Hold::Loose | Hold::Area)
+}
+
 fn families(hold: Hold, spec: Spec) -> Spec {
-    if matches!(hold, Hold::Corner | Hold::Loose) { spec } else { Spec { families: NO_BEND, ..spec } }
+    if bends(hold) { spec } else { Spec { families: NO_BEND, ..spec } }
+}
+
+/// The families with bend springs where they have none, and without where they have.
+pub fn other(families: Families) -> Families {
+    if families == NO_BEND { Families::ALL } else { NO_BEND }
 }
 
 /// The row of the implicit method of a scene.
@@ -112,7 +133,7 @@ pub fn whole(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Optio
         tolerance: 1.0,
         ..PlanDef::default()
     };
-    let plan = plan_of(&grid, &def, Method::Whole).ok()??;
+    let plan = plan_of(&grid, &def, Method::Whole, Some(bends(hold))).ok()??;
     let base = Spec::new(scene, fabric, side, Correction::Analytic);
     Some(families(hold, Spec { substeps: plan.substeps, ..base }))
 }
@@ -121,22 +142,22 @@ pub fn whole(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Optio
 pub fn methods(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Vec<(Hold, &'static str, Spec)> {
     let new = |correction| families(hold, Spec::new(scene, fabric, side, correction));
     let mut rows = Vec::new();
-    for substeps in [4, 8, 12, 16, 24, 32, 64] {
+    for substeps in [4, 8, 12, 16, 24, 32, 64, 128] {
         rows.push((hold, "plain", Spec { substeps, ..new(Correction::Uniform) }));
         if hold != Hold::Loose {
             rows.push((hold, "inertia", Spec { substeps, ..new(Correction::UniformInertia) }));
         }
     }
     if hold != Hold::Loose {
-        for substeps in [2, 4, 8, 16] {
+        for substeps in [2, 3, 4, 6, 8, 12, 16] {
             let base = new(Correction::Uniform);
             rows.push((hold, "tethers", Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         }
     }
-    if side < 64 {
+    if LAW_SIDES.contains(&side) || side < 64 {
         for substeps in [2, 4] {
             let base = new(Correction::Uniform);
-            rows.push((hold, "levels", Spec { substeps, limits: Limits::levels(0.05), ..base }));
+            rows.push((hold, "levels", Spec { substeps, limits: Limits::levels(LEVELS as f32), ..base }));
         }
     }
     rows
@@ -195,192 +216,4 @@ pub fn read(text: &str) -> Option<Vec<Point>> {
             })
         })
         .collect()
-}
-
-/// Coefficients of a fit, and how far above it the points lie at most.
-struct Fit {
-    coefficients: Vec<f64>,
-    margin: f64,
-}
-
-/// Least squares by the normal equations, with a hair of damping so that what no point tells is 0.
-fn fit(rows: &[(Vec<f64>, f64)]) -> Fit {
-    let n = rows.first().map_or(0, |r| r.0.len());
-    let mut a = vec![vec![0.0; n + 1]; n];
-    for (x, y) in rows {
-        for (row, xi) in a.iter_mut().zip(x) {
-            for (sum, xj) in row.iter_mut().zip(x.iter().chain([y])) {
-                *sum += xi * xj;
-            }
-        }
-    }
-    for (i, row) in a.iter_mut().enumerate() {
-        row[i] += 1e-6;
-    }
-    // Gauss and Jordan; symmetric and positive, so no pivots are sought
-    for i in 0..n {
-        let pivot = a[i].clone();
-        for (j, row) in a.iter_mut().enumerate() {
-            if j != i {
-                let factor = row[i] / pivot[i];
-                row.iter_mut().zip(&pivot).for_each(|(r, p)| *r -= factor * p);
-            }
-        }
-    }
-    let coefficients: Vec<f64> = (0..n).map(|i| a[i][n] / a[i][i]).collect();
-    let above = rows.iter().map(|(x, y)| y - x.iter().zip(&coefficients).map(|(x, c)| x * c).sum::<f64>());
-    Fit { margin: above.fold(0.0, f64::max), coefficients }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    all.sort_by(f64::total_cmp);
-    if all.is_empty() { 0.0 } else { crate::metrics::percentile(&all, 0.5) }
-}
-
-/// The strains of a method, and what is added to them for what lies between.
-fn strains(points: &[Point], hold: Hold, method: &str) -> String {
-    let of = || points.iter().filter(|p| p.hold == hold && p.method == method);
-    let mut substeps: Vec<u32> = of().map(|p| p.substeps).collect();
-    substeps.sort_unstable();
-    substeps.dedup();
-    let strain = |side: u32, s: u32| of().find(|p| p.side == side && p.substeps == s).map_or(BLOWN, |p| p.strain);
-    let mut ln: Vec<Vec<f64>> =
-        SIDES.iter().map(|side| substeps.iter().map(|s| strain(*side, *s).max(1e-5).ln()).collect()).collect();
-    let margin = margin(&ln, &substeps);
-    for i in 0..ln.len() {
-        for j in (0..substeps.len()).rev() {
-            let finer = if j + 1 < substeps.len() { ln[i][j + 1] } else { f64::MIN };
-            let coarser = if i > 0 { ln[i - 1][j] } else { f64::MIN };
-            ln[i][j] = ln[i][j].max(finer).max(coarser);
-        }
-    }
-    let list = |values: Vec<String>| format!("&[{}]", values.join(", "));
-    let rows: Vec<String> = ln.iter().map(|row| list(row.iter().map(|x| format!("{x:.3}")).collect())).collect();
-    format!(
-        "Strains {{ substeps: {}, ln_strain: [{}], margin: {margin:.3} }}",
-        list(substeps.iter().map(|s| format!("{s}.0")).collect()),
-        rows.join(", ")
-    )
-}
-
-/// Half of what a row lies above the line through its neighbours at most: they are twice as far from each other as those that
-/// a strain is looked up between.
-fn margin(ln: &[Vec<f64>], substeps: &[u32]) -> f64 {
-    let counts = |x: f64| RANGE.contains(&x.exp());
-    let above = |x: [f64; 3], y: [f64; 3]| y[1] - (y[0] + (y[2] - y[0]) * (x[1] - x[0]) / (x[2] - x[0]));
-    let mut most = 2.0 * LEAST_MARGIN;
-    let s: Vec<f64> = substeps.iter().map(|s| f64::from(*s).ln()).collect();
-    for row in ln {
-        for (x, y) in s.windows(3).zip(row.windows(3)).filter(|(_, y)| counts(y[1])) {
-            most = most.max(above([x[0], x[1], x[2]], [y[0], y[1], y[2]]));
-        }
-    }
-    let n = SIDES.map(|side| f64::from(side - 1).ln());
-    if let [a, b, c] = ln {
-        for ((a, b), c) in a.iter().zip(b).zip(c).filter(|((_, b), _)| counts(**b)) {
-            most = most.max(above(n, [*a, *b, *c]));
-        }
-    }
-    0.5 * most
-}
-
-/// The law of K as it is, from the rows of a method.
-fn fabric_law<'a>(rows: impl Iterator<Item = &'a Point>) -> String {
-    let rows: Vec<(Vec<f64>, f64)> = rows
-        .filter(|p| RANGE.contains(&p.strain))
-        .map(|p| {
-            let [warp, weft, shear, density] = p.fabric;
-            let weight = density * GRAVITY * SIDE_M;
-            // shares that add up to 1: strain is proportional to weight over stiffness
-            let ratio = [warp, weft, shear].map(|k| (weight / k).ln());
-            let x = vec![1.0, f64::from(p.side - 1).ln(), ratio[0] - ratio[2], ratio[1] - ratio[2]];
-            (x, p.strain.ln() - ratio[2])
-        })
-        .collect();
-    let f = fit(&rows);
-    let c = &f.coefficients;
-    format!(
-        "FabricLaw {{ constant: {:.3}, grid: {:.3}, warp: {:.3}, weft: {:.3}, shear: {:.3}, margin: {:.3} }}",
-        c[0],
-        c[1],
-        c[2],
-        c[3],
-        1.0 - c[2] - c[3],
-        f.margin
-    )
-}
-
-/// The source of the planner's table.
-pub fn table(points: &[Point]) -> String {
-    let mut text = String::from(
-        "//! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.\n\n\
-         use super::strains::Strains;\nuse super::{FabricLaw, Price, Row};\n\n\
-         /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; 5] = [\n",
-    );
-    for hold in Hold::ALL {
-        let of = |method: &'static str| points.iter().filter(move |p| p.hold == hold && p.method == method);
-        // what the scene needs beside the plain step is no price of a method
-        let scene = if hold == Hold::Loose { median(of("plain").map(|p| p.cost)) - 1.0 } else { 0.0 };
-        let price = |c: [f64; 3]| format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2]);
-        let fitted = |rows: Vec<&Point>, steps: bool| {
-            let x = |p: &Point| {
-                let step = if steps { 1.0 / f64::from(p.substeps) } else { 0.0 };
-                vec![1.0, 1.0 / f64::from(p.side - 1), step]
-            };
-            let c = fit(&rows.iter().map(|p| (x(p), p.cost - scene)).collect::<Vec<_>>()).coefficients;
-            [c[0], c[1], c[2]]
-        };
-        let plain = match hold {
-            Hold::Loose => [1.0, 0.0, 0.0],
-            _ => fitted(of("plain").chain(of("inertia")).collect(), true),
-        };
-        // levels meet any limit with two substeps, so no others are planned
-        let levels = of("levels").filter(|p| p.substeps == 2).map(|p| p.cost - scene);
-        let _ = writeln!(
-            text,
-            "    // {hold:?}\n    Row {{\n        plain: {},\n        inertia: {},\n        tethers: {},\n        whole: {},\n        implicit: {},\n        \
-             plain_price: {},\n        tethers_price: {},\n        levels_price: {},\n        implicit_price: {},\n    }},",
-            strains(points, hold, "plain"),
-            strains(points, hold, "inertia"),
-            strains(points, hold, "tethers"),
-            fabric_law(of("whole")),
-            fabric_law(of("implicit")),
-            price(plain),
-            price([median(of("tethers").map(|p| p.cost)), 0.0, 0.0]),
-            price([median(levels), 0.0, 0.0]),
-            price(fitted(of("implicit").collect(), false)),
-        );
-    }
-    text + "];\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const DATA: &str = include_str!("../data/plan.csv");
-    const TABLE: &str = include_str!("../../core/src/plan/table.rs");
-
-    #[test]
-    fn the_table_of_core_is_that_of_the_rows() {
-        let points = read(DATA).unwrap();
-        assert_eq!(csv(&points), DATA);
-        assert_eq!(table(&points), TABLE, "run the example distill");
-    }
-
-    #[test]
-    fn a_law_is_found_again() {
-        let rows: Vec<(Vec<f64>, f64)> = (1..20)
-            .map(|i| {
-                let (n, s) = (f64::from(i % 5 + 3).ln(), f64::from(i % 7 + 1).ln());
-                (vec![1.0, n, s], 0.5 + 3.0 * n + 1.1 * s)
-            })
-            .collect();
-        let f = fit(&rows);
-        for (found, put) in f.coefficients.iter().zip([0.5, 3.0, 1.1]) {
-            assert!((found - put).abs() < 1e-3, "{:?}", f.coefficients);
-        }
-        assert!(f.margin < 1e-3);
-    }
 }

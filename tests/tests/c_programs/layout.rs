@@ -180,6 +180,7 @@ fn structures_and_values_are_those_of_rust() {
         ("TAUT_HOLD_CORNERS", taut::plan::Hold::Corners as i64),
         ("TAUT_HOLD_CORNER", taut::plan::Hold::Corner as i64),
         ("TAUT_HOLD_LOOSE", taut::plan::Hold::Loose as i64),
+        ("TAUT_HOLD_AREA", taut::plan::Hold::Area as i64),
         ("TAUT_STIFFNESS_STIFFEST", taut::plan::PlanStiffness::Stiffest as i64),
         ("TAUT_STIFFNESS_FABRIC", taut::plan::PlanStiffness::Fabric as i64),
         ("TAUT_SHAPE_SPHERE", types::ColliderShape::TAUT_SHAPE_SPHERE as i64),

@@ -20,7 +20,7 @@ static int plans(void)
     } while (0)
     WRONG_PLAN(TAUT_ERROR_BAD_DEFINITION, size, def.size - 4);
     WRONG_PLAN(TAUT_ERROR_BAD_DEFINITION, cookie, 0);
-    WRONG_PLAN(TAUT_ERROR_OUT_OF_RANGE, hold, 5);
+    WRONG_PLAN(TAUT_ERROR_OUT_OF_RANGE, hold, 6);
     WRONG_PLAN(TAUT_ERROR_OUT_OF_RANGE, tolerance, 0.0f);
     WRONG_PLAN(TAUT_ERROR_OUT_OF_RANGE, budget_ns, -1.0f);
     WRONG_PLAN(TAUT_ERROR_OUT_OF_RANGE, plain_ns, 0.0f);
