@@ -633,7 +633,9 @@ typedef struct {
     float density_kg_m2;
     // Bending rigidity of a hinge in N m.
     float hinge_rigidity_n_m;
-    // Largest stretch of the fabric in use along the warp, as a fraction.
+    // Largest stretch of the fabric in use along the warp, as a fraction. To be strain limits with TAUT_FEATURE_LEVELS where
+    // cut_fraction of taut_cloth_budget is above 0.75; below, the field stretches like its fabric by itself, and limits hold
+    // it too tight.
     float limit_warp;
     // The same along the weft.
     float limit_weft;

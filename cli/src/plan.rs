@@ -183,7 +183,7 @@ fn why(
             format!("bend {}: {} it stretches by {} even with {}", bend[0], bend[1], pct(p.strain), substeps(p.substeps))
         }
         Some(p) => format!(
-            "bend {}: the scene ({about}) keeps {} to your tolerance as it is; {} it needs {}, stretches by {} and takes {:.2} times the time",
+            "bend {}: the scene ({about}) stretches {} less than your tolerance as it is; {} it needs {}, stretches by {} and takes {:.2} times the time",
             bend[0],
             pct(left),
             bend[1],

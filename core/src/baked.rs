@@ -33,7 +33,9 @@ pub struct Fabric {
     pub density_kg_m2: f32,
     /// Bending rigidity of a hinge in N m.
     pub hinge_rigidity_n_m: f32,
-    /// Largest stretch of the fabric in use as a fraction: warp, weft, diagonal.
+    /// Largest stretch of the fabric in use as a fraction: warp, weft, diagonal. To be limits ([`crate::Features::LEVELS`]) where the
+    /// budget takes more than three quarters of the field ([`crate::BudgetReport::cut_fraction`]); below, a field stretches like
+    /// its fabric by itself, and limits hold it too tight (docs/evaluation.md).
     pub stretch_limits: [f32; 3],
 }
 

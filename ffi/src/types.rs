@@ -487,7 +487,9 @@ pub struct Fabric {
     pub density_kg_m2: f32,
     /// Bending rigidity of a hinge in N m.
     pub hinge_rigidity_n_m: f32,
-    /// Largest stretch of the fabric in use along the warp, as a fraction.
+    /// Largest stretch of the fabric in use along the warp, as a fraction. To be strain limits with TAUT_FEATURE_LEVELS where
+    /// cut_fraction of taut_cloth_budget is above 0.75; below, the field stretches like its fabric by itself, and limits hold
+    /// it too tight.
     pub limit_warp: f32,
     /// The same along the weft.
     pub limit_weft: f32,

@@ -155,7 +155,13 @@ pub enum Limits {
     StrainLimit(f32),
     /// Levels at these strains along warp, weft and diagonal, with tethers of the same slacks.
     Levels([f32; 3]),
+    /// The same where the budget takes more than [`CUT`] of the field, else nothing.
+    WhereCut([f32; 3]),
 }
+
+/// The share of a field above which limits stand in for the stiffness that the step cannot carry: what is left stretches more than
+/// four times as far as the fabric. Below it a field with limits is farther from its fabric than without (docs/evaluation.md).
+pub const CUT: f32 = 0.75;
 
 impl Limits {
     /// The name in reports.
@@ -165,6 +171,7 @@ impl Limits {
             Limits::Tethers(_) => "tethers",
             Limits::StrainLimit(_) => "strain_limit",
             Limits::Levels(_) => "levels",
+            Limits::WhereCut(_) => "levels_where_cut",
         }
     }
 
@@ -178,7 +185,7 @@ impl Limits {
         match self {
             Limits::None => None,
             Limits::Tethers(strain) | Limits::StrainLimit(strain) => Some([strain; 3]),
-            Limits::Levels(strains) => Some(strains),
+            Limits::Levels(strains) | Limits::WhereCut(strains) => Some(strains),
         }
     }
 
@@ -193,7 +200,7 @@ impl Limits {
             Limits::None => Features::NONE,
             Limits::Tethers(_) => Features::TETHERS,
             Limits::StrainLimit(_) => Features::STRAIN_LIMIT,
-            Limits::Levels(_) => Features::LEVELS,
+            Limits::Levels(_) | Limits::WhereCut(_) => Features::LEVELS,
         };
         let strain = self.strains().unwrap_or(def.strain_limit);
         let slack = self.strains().unwrap_or(def.tether_slack);
@@ -222,6 +229,11 @@ impl Model {
         Model { limits: Limits::Levels(strains), ..setting.into() }
     }
 
+    /// The same where the budget takes most of the field.
+    pub fn limited_where_cut(setting: Setting, strains: [f32; 3]) -> Model {
+        Model { limits: Limits::WhereCut(strains), ..setting.into() }
+    }
+
     /// The name in reports: that of the setting, or with limits on levels that with "limits" for the inertia.
     pub fn name(&self) -> &'static str {
         let name = self.setting.name();
@@ -231,6 +243,8 @@ impl Model {
             (Limits::Levels(_), "ratios_inertia") => "ratios_limits",
             (Limits::Levels(_), "generated") => "generated_limits",
             (Limits::Levels(_), _) => "limits",
+            (Limits::WhereCut(_), "generated") => "generated_limits_where_cut",
+            (Limits::WhereCut(_), _) => "limits_where_cut",
             _ => name,
         }
     }
@@ -315,7 +329,7 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
     })?;
     let shape = (case.rows as usize, case.columns as usize);
     let memory = if model.solver == Solver::SymplecticEuler { Features::NONE } else { Features::IMPLICIT };
-    let def = model.limits.fit(&ClothDef {
+    let base = ClothDef {
         rate_hz: case.rate_hz,
         substeps: case.substeps,
         density_kg_m2: case.density_kg_m2,
@@ -327,17 +341,26 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
         cg_iterations: model.cg_iterations,
         features: memory,
         ..ClothDef::default()
-    });
-    let mut def = case.scene.fit(&def, shape.0, shape.1);
+    };
+    let mut def = case.scene.fit(&model.limits.fit(&base), shape.0, shape.1);
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let field = setting.field(case);
-    if let Setting::Reference(_) = setting {
-        // the substeps at which the budget cuts nothing, with a fifth more for the motion
-        let mut cloth = Cloth::create(&grid, &def, &mut block)?;
+    // what the budget says of the field where the scene pins it
+    let mut told = |def: &ClothDef| {
+        let mut cloth = Cloth::create(&grid, def, &mut block)?;
         cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, &field)?);
         case.scene.set_up(&mut cloth, 0)?;
-        let needed = 1.2 / (cloth.budget()?.max_dt_s * case.rate_hz);
+        cloth.budget()
+    };
+    if let Setting::Reference(_) = setting {
+        // the substeps at which the budget cuts nothing, with a fifth more for the motion
+        let needed = 1.2 / (told(&def)?.max_dt_s * case.rate_hz);
         def.substeps = (needed.ceil() as u32).clamp(case.substeps.min(MOST_SUBSTEPS), MOST_SUBSTEPS);
+    }
+    if let Limits::WhereCut(_) = model.limits
+        && told(&def)?.cut_fraction <= CUT
+    {
+        def = case.scene.fit(&base, shape.0, shape.1);
     }
     let mut cloth = Cloth::create(&grid, &def, &mut block)?;
     let scaled: Vec<f32>;

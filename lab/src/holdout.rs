@@ -145,7 +145,7 @@ mod tests {
             let step = match spec.limits {
                 _ if spec.solver != Solver::SymplecticEuler => 100.0,
                 Limits::None => 0.6 + bend,
-                Limits::Levels(_) => 25.0,
+                Limits::Levels(_) | Limits::WhereCut(_) => 25.0,
                 Limits::Tethers(_) | Limits::StrainLimit(_) => 1.1 + bend,
             };
             step * f64::from(row.substeps)

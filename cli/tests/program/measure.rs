@@ -75,6 +75,7 @@ fn a_trajectory_is_compared_with_every_setting() {
         "analytic_limits",
         "ratios_limits",
         "generated_limits",
+        "generated_limits_where_cut",
     ];
     assert!(names.iter().all(|n| run.stdout.contains(n)) && run.stdout.contains("the trajectory"), "{}", run.stdout);
     let json = fs::read_to_string(home.path().join("out.json")).expect("written");

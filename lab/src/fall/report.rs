@@ -113,9 +113,14 @@ pub fn cost_chart(rows: &[Row], processor: &str) -> Option<Chart> {
     }
     let (low, high) =
         rows.iter().fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r.cpu_ms_per_s), h.max(r.cpu_ms_per_s)));
+    let sides = rows.iter().map(|r| f64::from(r.n));
+    let (least, most) = (sides.clone().fold(f64::INFINITY, f64::min), sides.fold(0.0, f64::max));
+    // an axis of a single size has no numbers
+    let along = if least == most { format!(": {least}") } else { String::new() };
+    let along = format!("particles along each side{along}");
     let mut chart = Chart::new(
         &format!("A falling sheet on {processor}"),
-        Axis::log("particles along each side"),
+        Axis::log(&along),
         // room for the legend above the lines
         Axis { range: Some([low / 1.5, 20.0 * high]), ..Axis::log("ms of CPU per simulated second") },
     );

@@ -186,7 +186,7 @@ impl Spec {
             Limits::None => 1.0,
             Limits::Tethers(_) => 4.0,
             Limits::StrainLimit(_) => 5.0,
-            Limits::Levels(_) => 20.0,
+            Limits::Levels(_) | Limits::WhereCut(_) => 20.0,
         };
         let frames = f64::from(set.seconds(self.scene) * self.rate_hz);
         // what a row costs beside its steps: the yardstick, the start, the measures

@@ -49,6 +49,8 @@ const MARGIN: i32 = 14;
 const SMALL: i32 = 13;
 const LARGE: i32 = 16;
 const LETTER: i32 = 7;
+/// The same of the latter.
+const LARGE_LETTER: i32 = 9;
 
 fn longest<'a>(places: impl Iterator<Item = &'a Places>) -> i32 {
     let longest = places.flat_map(|p| &p.names).map(|n| n.chars().count()).max().unwrap_or(0);
@@ -65,13 +67,15 @@ impl CellMaps {
         (longest(self.maps().map(|m| &m.y)) + 2 * LARGE, longest(self.maps().map(|m| &m.x)) + 2 * LARGE)
     }
 
-    /// Width of each column of maps, height of each row without its names.
+    /// Width of each column of maps, which its title fits in, height of each row without its names.
     fn extents(&self) -> (Vec<i32>, Vec<i32>) {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let width = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).map(|m| m.x.names.len()).max().unwrap_or(0);
         let height = |r: &Vec<CellMap>| r.iter().map(|m| m.y.names.len()).max().unwrap_or(0);
         let px = |cells: usize| CELL * cells.min(1000) as i32;
-        ((0..columns).map(|c| px(width(c))).collect(), self.rows.iter().map(|r| px(height(r))).collect())
+        let title = |c: usize| self.rows.first().and_then(|r| r.get(c)).map_or(0, |m| m.title.chars().count().min(64));
+        let wide = |c: usize| px(width(c)).max(LARGE_LETTER * title(c) as i32);
+        ((0..columns).map(wide).collect(), self.rows.iter().map(|r| px(height(r))).collect())
     }
 }
 
@@ -110,8 +114,11 @@ impl Figure for CellMaps {
                     let at = (x + CELL * i as i32 + CELL / 2, bottom + 5);
                     pen.text(name, at, SMALL, (HPos::Right, VPos::Center), true)?;
                 }
-                let at = (x, bottom + below - LARGE - 6);
-                pen.text(&map.x.label, at, SMALL, (HPos::Left, VPos::Center), false)?;
+                // one that is too long for its map stands below the first alone
+                if c == 0 || LETTER * map.x.label.chars().count() as i32 <= width + GAP {
+                    let at = (x, bottom + below - LARGE - 6);
+                    pen.text(&map.x.label, at, SMALL, (HPos::Left, VPos::Center), false)?;
+                }
                 if c == 0 {
                     for (i, name) in map.y.names.iter().enumerate() {
                         let at = (x - 5, bottom - CELL * i as i32 - CELL / 2);

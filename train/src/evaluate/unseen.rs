@@ -40,6 +40,8 @@ pub struct Choice {
     pub silhouette_nmse: f64,
     /// Distance in percent of the side.
     pub distance_pct: f64,
+    /// Share of the field that the budget took, 0 to 1.
+    pub cut_fraction: f64,
     /// Whether it stayed finite.
     pub finite: bool,
 }
@@ -127,10 +129,11 @@ fn measure(job: &Job, net: &Net, vertices: usize) -> Result<Row, EvaluateError> 
     let field = told.on(job.side, job.side);
     let mut models = vec![
         ("generated".to_string(), Setting::Generated(field.clone()).into()),
-        ("generated, its limits".into(), Model::limited(Setting::Generated(field), told.limits)),
+        ("generated, its limits".into(), Model::limited(Setting::Generated(field.clone()), told.limits)),
+        ("generated, limits where cut".into(), Model::limited_where_cut(Setting::Generated(field), told.limits)),
         (
             "generated, shuffled words".into(),
-            Model::limited(Setting::Generated(wrong.on(job.side, job.side)), wrong.limits),
+            Model::limited_where_cut(Setting::Generated(wrong.on(job.side, job.side)), wrong.limits),
         ),
     ];
     for slack in SLACKS {
@@ -142,7 +145,10 @@ fn measure(job: &Job, net: &Net, vertices: usize) -> Result<Row, EvaluateError> 
     let mut choices = Vec::new();
     for (name, model) in models {
         let outcome = run(job.side, &model)?;
-        choices.push(choice(name, &reference.compare(&outcome.positions, job.side, job.side, outcome.finite)));
+        choices.push(Choice {
+            cut_fraction: outcome.cut_fraction,
+            ..choice(name, &reference.compare(&outcome.positions, job.side, job.side, outcome.finite))
+        });
     }
     Ok(Row {
         words: job.held.words.clone(),
@@ -163,6 +169,7 @@ fn choice(name: String, c: &Comparison) -> Choice {
         ex_pin_mean_pct: [d.u, d.v, d.diag].map(|b| [sound(b.taut.mean), b.reference.mean]),
         silhouette_nmse: sound(c.silhouette_nmse),
         distance_pct: sound(c.distance_pct.unwrap_or(0.0)),
+        cut_fraction: 0.0,
         finite: c.finite,
     }
 }
@@ -240,6 +247,7 @@ mod tests {
             ex_pin_mean_pct: [[mine, theirs]; 3],
             silhouette_nmse: 0.5,
             distance_pct: mine,
+            cut_fraction: 0.0,
             finite,
         };
         let row = |c: Choice| Row {

@@ -187,7 +187,8 @@ fn simulate(args: &Args, generator: &Generator, job: &Job) -> Result<Ran, Failur
         Model::limited(Setting::UniformInertia, one),
         Model::limited(Setting::AnalyticInertia(fabric), one),
         Model::limited(Setting::RatiosInertia, one),
-        Model::limited(Setting::Generated(field), limits),
+        Model::limited(Setting::Generated(field.clone()), limits),
+        Model::limited_where_cut(Setting::Generated(field), limits),
     ];
     let progress = Progress::new(models.len());
     let mut outcomes = Vec::with_capacity(models.len());
