@@ -20,7 +20,7 @@ const SUMMARY: &str = "summary.txt";
 /// `taut measure report`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The full sets of front, fall and atlas, hours; without it their quick ones, all parts in about a quarter of an hour.
+    /// The full sets of front, fall and atlas, hours; without it their quick ones, all parts in about five minutes.
     #[arg(long)]
     pub full: bool,
     /// A part; give it several times for several [default: all].
