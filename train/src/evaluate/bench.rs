@@ -51,7 +51,7 @@ struct Header<'a, T: Serialize> {
 const FABRICS: usize = 16;
 
 /// Version of the rows.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 impl<'a> Bench<'a> {
     /// A bench in a folder, which is made where it is not.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use taut_lab::plot::{Chart, Figure as _};
 
 use super::paper::Paper;
-use super::{Bench, EvaluateError, losses, noise, rivals, unseen};
+use super::{Bench, EvaluateError, discs, losses, noise, rivals, unseen};
 use crate::Shard;
 use crate::gan::write_whole;
 use crate::stop::on_ctrl_c;
@@ -86,6 +86,9 @@ pub struct Report {
     /// Unseen fabrics: every run, and the means.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unseen: Option<Unseen>,
+    /// Discs of unseen fabrics.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unseen_discs: Option<Discs>,
 }
 
 /// Fig. 8.
@@ -104,6 +107,15 @@ pub struct Unseen {
     pub rows: Vec<unseen::Row>,
     /// Means by place.
     pub means: Vec<Means>,
+}
+
+/// Discs of unseen fabrics.
+#[derive(Debug, Serialize)]
+pub struct Discs {
+    /// Every fabric.
+    pub rows: Vec<discs::Row>,
+    /// Errors of each choice.
+    pub means: Vec<discs::Mean>,
 }
 
 /// Means at a place.
@@ -154,6 +166,9 @@ pub fn evaluate(args: &EvaluateArgs, stop: &AtomicBool) -> Result<(Report, Strin
                 .collect(),
             rows,
         });
+        let rows = discs::rows(&mut bench)?;
+        report.unseen_discs = told("Unseen fabrics: drape coefficient of a disc", rows, discs::text, &mut text)
+            .map(|rows| Discs { means: discs::means(&rows.iter().collect::<Vec<_>>()), rows });
     }
     if asked(Figure::Seven) {
         let rows = noise::rows(&mut bench)?;
@@ -219,6 +234,11 @@ mod tests {
         let choices = &report.figure_9.as_ref().unwrap()[0].choices;
         assert!(choices[0].scores.is_none() && choices[1..].iter().all(|c| c.scores.is_some()), "{choices:?}");
         assert!(report.unseen.as_ref().unwrap().rows.iter().all(|r| r.choices.iter().all(|c| c.finite)));
+        let discs = &report.unseen_discs.as_ref().unwrap().rows;
+        assert!(
+            discs.iter().all(|r| r.choices.iter().all(|c| (0.0..=1.1).contains(&c.drape_coefficient))),
+            "{discs:?}"
+        );
         for plot in ["figure-7.png", "figure-8.png", rivals::PICTURE] {
             assert!(home.path().join(plot).exists(), "{plot}");
         }

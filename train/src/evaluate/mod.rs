@@ -3,12 +3,13 @@
 //! * [`noise`]: Fig. 7, pictures of the generated cloth for nets that were trained with 1 to 6 % of noise.
 //! * [`losses`]: Fig. 8, the terms of the loss added one by one, and cross entropy against least squares.
 //! * [`rivals`]: Fig. 9, the generated cloth beside K from data, from formulas and beside what a game has.
-//! * [`unseen`]: fabrics that no net has seen, with their own words and with those of another fabric.
+//! * [`unseen`], [`discs`]: fabrics that no net has seen, with their own words and with those of another fabric, hung and draped.
 //!
 //! Every figure is a list of jobs whose rows stand in a ledger of the folder, so a run can be interrupted and spread over
 //! machines; nets are trained once, in folders of their own. docs/evaluation.md says what came out.
 
 pub mod command;
+pub mod discs;
 pub mod held;
 pub mod ladder;
 pub mod losses;

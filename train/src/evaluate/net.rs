@@ -26,6 +26,10 @@ pub struct Net {
 pub struct Told {
     /// Stiffness in N/m, `[4][32][32]`.
     field: Vec<f32>,
+    /// Mass per area in kg/m^2.
+    pub density_kg_m2: f32,
+    /// Bending rigidity of a hinge in N m.
+    pub rigidity_n_m: f32,
     /// Strain limits of warp, weft and diagonal.
     pub limits: [f32; 3],
 }
@@ -82,9 +86,12 @@ impl Net {
         let field = read(out.field.into_data())?;
         let of_channel = |(i, t): (usize, &f32)| decode(*t, &self.codings.0[i / (GRID * GRID)]);
         let fabric = read(out.fabric.into_data())?;
+        let of_fabric = |i: usize| decode(fabric[i], &self.codings.1[i]);
         Ok(Told {
             field: field.iter().enumerate().map(of_channel).collect(),
-            limits: std::array::from_fn(|i| decode(fabric[2 + i], &self.codings.1[2 + i])),
+            density_kg_m2: of_fabric(0),
+            rigidity_n_m: of_fabric(1),
+            limits: std::array::from_fn(|i| of_fabric(2 + i)),
         })
     }
 }
