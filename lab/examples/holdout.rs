@@ -22,7 +22,8 @@ fn main() -> Result<(), String> {
     for (i, scene) in SCENES.into_iter().enumerate() {
         for (j, side) in SIDES.into_iter().enumerate() {
             let fabric = FABRICS[(i + j) % FABRICS.len()];
-            let verdicts = judge(&mut bench, (scene, fabric, side), &TOLERANCES, &cost, &mut |row| eprintln!("{row}"))?;
+            let verdicts =
+                judge(&mut bench, (scene, fabric, side), &TOLERANCES, 2, &cost, &mut |row| eprintln!("{row}"))?;
             for v in &verdicts {
                 println!(
                     "| {} | {:.1} | {:.2} | {:.2} | {} | {:.2} | {:.2} | {:.2} | {} |",

@@ -154,7 +154,8 @@ pub fn methods(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Vec
             rows.push((hold, "tethers", Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         }
     }
-    if LAW_SIDES.contains(&side) || side < 64 {
+    // larger ones take long to come to rest under them
+    if side <= 64 {
         for substeps in [2, 4] {
             let base = new(Correction::Uniform);
             rows.push((hold, "levels", Spec { substeps, limits: Limits::levels(LEVELS as f32), ..base }));

@@ -78,11 +78,12 @@ pub fn row_of(plan: &Plan, scene: Scene, fabric: &'static str, side: u32) -> Spe
 }
 
 /// Asks for plans of one scene and judges them. `cost` says what a row costs, `look` sees the name of every row before it is
-/// measured.
+/// measured; each is measured so many `times`, of which the cheapest counts: what the machine does beside only adds.
 pub fn judge(
     bench: &mut Bench<'_>,
     (scene, fabric, side): (Scene, &'static str, u32),
     tolerances: &[f32],
+    times: u32,
     cost: &dyn Fn(&Spec, &Row) -> f64,
     look: &mut dyn FnMut(&str),
 ) -> Result<Vec<Verdict>, String> {
@@ -96,11 +97,14 @@ pub fn judge(
     specs.push(Spec::reference(scene, fabric, side));
     let mut measure = |spec: &Spec| {
         look(&spec.key());
-        let row = bench.measure(spec)?;
+        let mut row = bench.measure(spec)?;
         let strain = row.stretch_max_pct.map_or(f64::INFINITY, |pct| pct / 100.0);
-        // what the machine does beside only adds
-        let again = cost(spec, &bench.measure(spec)?);
-        Ok::<_, String>((strain, cost(spec, &row).min(again), spec.key()))
+        let mut least = cost(spec, &row);
+        for _ in 1..times {
+            row = bench.measure(spec)?;
+            least = least.min(cost(spec, &row));
+        }
+        Ok::<_, String>((strain, least, spec.key()))
     };
     let rows = specs.iter().map(&mut measure).collect::<Result<Vec<_>, String>>()?;
     let mut verdicts = Vec::new();
@@ -151,7 +155,7 @@ mod tests {
             step * f64::from(row.substeps)
         };
         for scene in [Scene::Hang2, Scene::Edge] {
-            let verdicts = judge(&mut bench, (scene, "wool", 22), &[0.02, 0.05, 0.1], &cost, &mut |_| ()).unwrap();
+            let verdicts = judge(&mut bench, (scene, "wool", 22), &[0.02, 0.05, 0.1], 1, &cost, &mut |_| ()).unwrap();
             for v in &verdicts {
                 assert!(v.promised && v.meets(), "{scene}: {v:?}");
                 assert!(v.strain <= f64::from(v.told), "{scene}: {v:?}");

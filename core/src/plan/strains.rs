@@ -1,9 +1,7 @@
 //! The largest strain of a cloth that is as stiff as its step carries, between measured ones.
 
+use super::table::CELLS;
 use crate::math::{max, min, sqrt};
-
-/// Cells along a side of the grids that were measured.
-pub(super) const CELLS: [f32; 7] = [15.0, 21.0, 31.0, 44.0, 63.0, 89.0, 127.0];
 
 /// What was measured of a method: ln of the largest strain of a sheet of 1 m at 60 Hz under 9.81 m/s^2. Never less with fewer
 /// substeps or on a finer grid; where it blew up ln 2.
@@ -12,7 +10,7 @@ pub(super) struct Strains {
     /// Substeps that were measured, upwards; empty where the method makes no sense.
     pub substeps: &'static [f32],
     /// By [`CELLS`], then by `substeps`.
-    pub ln_strain: [&'static [f32]; 7],
+    pub ln_strain: [&'static [f32]; CELLS.len()],
     /// What is added to ln of the strain, for what lies between: half of what one measured row in ten lay above its neighbours'
     /// line.
     pub margin: f32,

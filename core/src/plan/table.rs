@@ -1,11 +1,14 @@
 //! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.
 
 use super::strains::Strains;
-use super::{Bend, FabricLaw, Price, Row};
+use super::{Bend, FabricLaw, Hold, Price, Row};
+
+/// Cells along a side of the grids that were measured.
+pub(super) const CELLS: [f32; 7] = [15.0, 21.0, 31.0, 44.0, 63.0, 89.0, 127.0];
 
 /// A row for each hold, in the order of their numbers.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 6] = [
+pub(super) const ROWS: [Row; Hold::ALL.len()] = [
     // Edge
     Row {
         bend: Bend { kept: false, ln_strain: -0.035, price: 0.39 },

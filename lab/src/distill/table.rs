@@ -58,10 +58,11 @@ fn fit(rows: &[(Vec<f64>, f64)]) -> Fit {
     Fit { margin: above.fold(0.0, f64::max), coefficients }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+/// The value that a share of them lie at or below, 0 of none.
+fn quantile(values: impl IntoIterator<Item = f64>, share: f64) -> f64 {
+    let mut all: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
     all.sort_by(f64::total_cmp);
-    if all.is_empty() { 0.0 } else { crate::metrics::percentile(&all, 0.5) }
+    if all.is_empty() { 0.0 } else { crate::metrics::percentile(&all, share) }
 }
 
 /// What a padded particle costs in plain steps: a pass works on whole vectors of 16.
@@ -69,7 +70,7 @@ fn cost(p: &Point) -> f64 {
     p.cost * f64::from(p.side) / f64::from(p.side.next_multiple_of(16))
 }
 
-/// The law of a price. What the machine did beside lies far above it, and is left out of a second fit.
+/// The law of a price. What the machine did beside lies far above it, and is left out of the next fit.
 fn price(rows: &[&Point], steps: bool) -> String {
     let x = |p: &Point| {
         let step = if steps { 1.0 / f64::from(p.substeps) } else { 0.0 };
@@ -87,9 +88,7 @@ fn price(rows: &[&Point], steps: bool) -> String {
 
 /// The price that three of four rows stay under: how much levels have to do is no law of the grid.
 fn dearest(rows: Vec<&Point>) -> String {
-    let mut all: Vec<f64> = rows.into_iter().map(cost).collect();
-    all.sort_by(f64::total_cmp);
-    let price = if all.is_empty() { 0.0 } else { crate::metrics::percentile(&all, 0.75) };
+    let price = quantile(rows.into_iter().map(cost), 0.75);
     format!("Price {{ constant: {price:.2}, grid: 0.00, step: 0.00 }}")
 }
 
@@ -134,9 +133,8 @@ fn counts(ln_strain: f64) -> bool {
 }
 
 /// The margin that only the share [`OUTSIDE`] of the rows lie above.
-fn margin(mut above: Vec<f64>) -> f64 {
-    above.sort_by(f64::total_cmp);
-    if above.is_empty() { LEAST_MARGIN } else { LEAST_MARGIN.max(crate::metrics::percentile(&above, 1.0 - OUTSIDE)) }
+fn margin(above: Vec<f64>) -> f64 {
+    LEAST_MARGIN.max(quantile(above, 1.0 - OUTSIDE))
 }
 
 /// The strains as they are, and what they lie above the line through their neighbours.
@@ -193,7 +191,7 @@ fn bend(points: &[Point], hold: Hold) -> String {
     });
     let (strains, prices): (Vec<f64>, Vec<f64>) = pairs.unzip();
     let ln_strain = strains.into_iter().reduce(f64::max).unwrap_or(0.0);
-    format!("Bend {{ kept: {}, ln_strain: {ln_strain:.3}, price: {:.2} }}", bends(hold), median(prices.into_iter()))
+    format!("Bend {{ kept: {}, ln_strain: {ln_strain:.3}, price: {:.2} }}", bends(hold), quantile(prices, 0.5))
 }
 
 /// The law of K as it is, from the rows of a method.
@@ -226,8 +224,15 @@ fn fabric_law<'a>(rows: impl Iterator<Item = &'a Point>) -> String {
 pub fn table(points: &[Point]) -> String {
     let mut text = String::from(
         "//! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.\n\n\
-         use super::strains::Strains;\nuse super::{Bend, FabricLaw, Price, Row};\n\n\
-         /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; 6] = [\n",
+         use super::strains::Strains;\nuse super::{Bend, FabricLaw, Hold, Price, Row};\n\n",
+    );
+    let cells: Vec<String> = SIDES.iter().map(|side| format!("{}.0", side - 1)).collect();
+    let _ = write!(
+        text,
+        "/// Cells along a side of the grids that were measured.\npub(super) const CELLS: [f32; {}] = [{}];\n\n\
+         /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; Hold::ALL.len()] = [\n",
+        cells.len(),
+        cells.join(", ")
     );
     for hold in Hold::ALL {
         let of = |method: &'static str| points.iter().filter(move |p| p.hold == hold && p.method == method);

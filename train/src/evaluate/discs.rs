@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 use taut_lab::cusick::{Disc, Statistics};
 use taut_lab::fabric::{self, Fabric, rigidity_at};
+use taut_lab::metrics;
 use taut_lab::scene::Scene;
 
 use super::held::{Held, fabrics};
@@ -104,11 +105,7 @@ fn measure(held: &Held, heard: &str, net: &Net, (side, drapes): (u32, u64)) -> R
 /// Medians of rigidity and mass per area of what nets learn from: all that is known without words.
 fn common() -> (f32, f32) {
     let all: Vec<Fabric> = (0..SAMPLES).map(|i| fabric::sample(COMMON, i).0).collect();
-    let median = |of: fn(&Fabric) -> f32| {
-        let mut values: Vec<f32> = all.iter().map(of).collect();
-        values.sort_by(f32::total_cmp);
-        values[values.len() / 2]
-    };
+    let median = |of: fn(&Fabric) -> f32| metrics::median(&all.iter().map(of).collect::<Vec<_>>());
     (median(|f| f.hinge_rigidity_n_m), median(|f| f.density_kg_m2))
 }
 
