@@ -1306,8 +1306,7 @@ taut_result taut_cloth_step_all(taut_cloth *const *cloths,
 // left over. It is the same for every frame.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE, TAUT_ERROR_OUT_OF_RANGE (fewer rows than 8;
-// an implicit solver, or a feature other than TAUT_FEATURE_PULL, TAUT_FEATURE_MASK and TAUT_FEATURE_TETHERS: such a cloth
-// cannot be stepped in bands).
+// an implicit solver, TAUT_FEATURE_STRAIN_LIMIT or TAUT_FEATURE_LEVELS: such a cloth cannot be stepped in bands).
 // Threads: reads the cloth.
 TAUT_API
 taut_result taut_cloth_bands_memory(const taut_cloth *cloth,

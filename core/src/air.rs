@@ -22,7 +22,7 @@ use crate::force::View;
 use crate::layout::{Layout, block};
 use crate::math::sqrt;
 use crate::simd::{NUMBERS, Pass, Three, Vector};
-use crate::{Cloth, Error, noise, simd};
+use crate::{Cloth, Error, noise};
 
 /// Cells of a row that are worked on at a time.
 const LANES: usize = 16;
@@ -177,41 +177,53 @@ impl Cloth<'_> {
         2.0 * self.drag_share() / self.def.dt_s()
     }
 
-    /// Adds the forces of the air in N to the planes of forces.
-    pub(crate) fn add_air(&mut self, substep: u32) {
-        let Ok(air) = self.air() else {
-            return;
-        };
+    /// The air of a frame; none where it gives no force.
+    pub(crate) fn weather(&self) -> Option<Weather> {
+        let air = self.air().ok()?;
         if air.density_kg_m3 == 0.0 || (air.drag == 0.0 && air.lift == 0.0) {
-            return;
+            return None;
         }
-        let (l, dt) = (self.layout, self.def.dt_s());
-        let substeps = u64::from(self.def.substeps);
-        let count = self.step_index.wrapping_mul(substeps).wrapping_add(u64::from(substep));
-        let flow = Flow {
-            wind: air.wind_at(count, 1.0 / (f64::from(self.def.rate_hz) * substeps as f64)),
+        let (dt, substeps) = (self.def.dt_s(), u64::from(self.def.substeps));
+        let substep_s = 1.0 / (f64::from(self.def.rate_hz) * substeps as f64);
+        Some(Weather {
+            air,
+            first: self.step_index.wrapping_mul(substeps),
+            substep_s,
+            dt,
+            limit: self.drag_share() / dt,
+        })
+    }
+}
+
+/// What the air of every substep of a frame follows from.
+#[derive(Clone, Copy)]
+pub(crate) struct Weather {
+    air: Air,
+    /// Number of the frame's first substep.
+    first: u64,
+    substep_s: f64,
+    dt: f32,
+    /// [`Flow::limit`].
+    limit: f32,
+}
+
+impl Weather {
+    /// The air of a substep, counted from 0.
+    pub fn flow(&self, substep: u32) -> Flow {
+        let air = &self.air;
+        Flow {
+            wind: air.wind_at(self.first.wrapping_add(u64::from(substep)), self.substep_s),
             half_density: 0.5 * air.density_kg_m3,
             drag: air.drag,
             lift: air.lift,
-            dt,
-            limit: self.drag_share() / dt,
-        };
-        let [x, y, z] = &mut self.force;
-        let blow = Blow {
-            layout: &l,
-            flow,
-            x: self.x.view(),
-            v: self.v.view(),
-            inverse: self.inverse,
-            mask: self.mask,
-            force: [&mut **x, &mut **y, &mut **z],
-        };
-        simd::run(self.width, blow);
+            dt: self.dt,
+            limit: self.limit,
+        }
     }
 }
 
 /// The air of one substep.
-struct Flow {
+pub(crate) struct Flow {
     wind: [f32; 3],
     half_density: f32,
     drag: f32,
@@ -272,15 +284,19 @@ impl<'p> Corners<'p> {
     }
 }
 
-/// Adds the forces of the air to those on the particles.
-struct Blow<'p> {
-    layout: &'p Layout,
-    flow: Flow,
-    x: View<'p>,
-    v: View<'p>,
-    inverse: &'p [f32],
-    mask: &'p [f32],
-    force: [&'p mut [f32]; 3],
+/// Adds the forces of the air in N to those on the particles of some rows. A cell at their border is worked out for both sides
+/// of it, where they are worked on apart.
+pub(crate) struct Blow<'p> {
+    pub layout: &'p Layout,
+    pub flow: Flow,
+    /// The rows, from and to.
+    pub rows: [usize; 2],
+    pub x: View<'p>,
+    pub v: View<'p>,
+    pub inverse: &'p [f32],
+    pub mask: &'p [f32],
+    /// The forces of these rows and no others.
+    pub force: [&'p mut [f32]; 3],
 }
 
 impl Pass for Blow<'_> {
@@ -290,7 +306,8 @@ impl Pass for Blow<'_> {
     fn run<V: Vector>(mut self, zero: V) {
         // a row has one cell less than particles
         let cells = self.layout.columns.saturating_sub(1);
-        for row in 1..self.layout.rows {
+        let [from, to] = self.rows;
+        for row in from.max(1)..(to + 1).min(self.layout.rows) {
             let mut first = 0;
             while first < cells {
                 self.block(zero, self.layout.at(row - 1, first), cells - first);
@@ -347,9 +364,12 @@ impl Blow<'_> {
         self.add(zero, Three([zero; 3]).next1(before), at.wrapping_add(LANES));
     }
 
-    /// Adds forces to the particles from a place on and to those below.
+    /// Adds forces to the particles from a place on and to those below, as far as they are in the rows: a place before them
+    /// wraps, and nothing is beyond the planes.
     #[inline(always)]
     fn add<V: Vector>(&mut self, zero: V, force: Three<V>, at: usize) {
+        let [from, _] = self.rows;
+        let at = at.wrapping_sub(self.layout.row(from));
         for at in [at, at.wrapping_add(self.layout.stride)] {
             let [x, y, z] = &mut self.force;
             Three::read(zero, [x, y, z], at).plus(force).write([x, y, z], at);
@@ -386,7 +406,7 @@ mod tests {
                 write(cloth.mask, at, if absent == Some((row, column)) { 0.0 } else { 1.0 });
             }
         }
-        cloth.add_air(0);
+        cloth.outer_forces(0);
         let l = cloth.layout;
         (0..280).map(|i| read(&*cloth.force[2], l.at(i / 70, i % 70))).collect()
     }

@@ -1,8 +1,8 @@
 //! A frame in bands of rows, which the threads of a job system may step side by side: the bits of [`Cloth::step`], for any
 //! number of bands and threads. The core itself starts no threads.
 //!
-//! A substep has two phases, or three with tethers: what crosses the borders between the bands; the rows themselves with
-//! their pins; the tethers. In each of them a band writes only what is its own, and reads beyond it only what nobody writes
+//! A substep has two phases, or three with tethers: what crosses the borders between the bands, and the forces of air, hinges
+//! and weights; the rows themselves with their pins; the tethers. Targets and colliders come last. In each of them a band writes only what is its own, and reads beyond it only what nobody writes
 //! in that phase ([`rows`]). So nothing depends on who comes first, as long as no band begins a phase before all bands have
 //! ended the one before. That is kept by a counter for each band: [`Bands::run`] looks at all of them before it begins, and
 //! refuses what comes too early. So a wrong order is an error, never a race, and a job system needs no locks but its own.
@@ -12,13 +12,17 @@
 //! works on a band. It begins only when all counters have come to the end of the phase before (read with acquire, written
 //! with release), and while it runs no other band can come to the next phase, since its own counter does not move. So all
 //! that runs at a time is of one phase:
-//! - crossing reads positions and writes the carry of the band and the border above it;
-//! - moving reads borders and the carry of the band and writes positions, velocities and anchors of its own rows;
-//! - the tethers read anchors, and read and write positions and velocities of the band's own rows.
+//! - crossing reads positions and velocities and writes the carry of the band, the border above it and the forces on its own
+//!   rows;
+//! - moving reads borders, the carry and the forces of the band and writes positions, velocities and anchors of its own rows;
+//! - the tethers read anchors, and read and write positions and velocities of the band's own rows;
+//! - targets and colliders do the same in the last of these phases, without anchors.
 //!
-//! Stiffness, masses, pins and tethers are only read. No reference to a whole plane that is written exists meanwhile.
+//! Stiffness, masses, mask, pins, tethers, targets and colliders are only read. No reference to a whole plane that is written
+//! exists meanwhile.
 #![allow(unsafe_code)] // pointers to planes that bands share: see the last paragraphs
 
+mod parts;
 pub(crate) mod rows;
 #[cfg(test)]
 mod tests;
@@ -31,16 +35,16 @@ use crate::force::{Pointers, Substep, Sweep};
 use crate::layout::{CARRY_ROWS, Layout, PIN_NUMBERS, take};
 use crate::math::round16;
 use crate::pins::{Pin, pin_of};
-use crate::tethers::{self, Pull, TETHERS, Tethers};
 use crate::width::Supported;
 use crate::{Cloth, Error, Features, Solver, StepFlags, in_default_environment, simd};
+use parts::Parts;
 use rows::{BORDER_ROWS, Cross, Move, Rows};
 
 /// Fewest rows of a band. The last one may have up to twice as many as the others, less one.
 pub const LEAST_BAND_ROWS: usize = 8;
 
-/// What bands can step: springs, pins, pull, mask, inertia field, limits of speed and compression, tethers.
-const ALLOWED: u32 = Features::PULL.0 | Features::MASK.0 | Features::TETHERS.0;
+/// What bands cannot step: what looks at all rows before it goes on.
+const REFUSED: u32 = Features::STRAIN_LIMIT.0 | Features::LEVELS.0;
 
 /// A frame of a cloth that is being stepped in bands. Any number of threads may use it at a time.
 ///
@@ -77,7 +81,7 @@ struct Plan {
     pointers: Pointers,
     pins: *const f32,
     pin_count: usize,
-    tethers: [[*mut f32; TETHERS]; 3],
+    parts: Parts,
     /// Where the pins are, at their places of three planes; null without tethers.
     anchors: [*mut f32; 3],
     carry: *mut f32,
@@ -90,7 +94,7 @@ impl Cloth<'_> {
     /// How many bands there are of so many rows.
     fn band_count(&self, rows_per_band: usize) -> Result<usize, Error> {
         let d = &self.def;
-        if rows_per_band < LEAST_BAND_ROWS || d.solver != Solver::SymplecticEuler || d.features.0 & !ALLOWED != 0 {
+        if rows_per_band < LEAST_BAND_ROWS || d.solver != Solver::SymplecticEuler || d.features.0 & REFUSED != 0 {
             return Err(Error::OutOfRange);
         }
         Ok((self.layout.rows / rows_per_band.max(1)).max(1))
@@ -99,7 +103,7 @@ impl Cloth<'_> {
     /// f32 numbers of memory that bands of so many rows need beside the cloth.
     ///
     /// Error: [`Error::OutOfRange`] (fewer rows than [`LEAST_BAND_ROWS`], an implicit solver, or a feature that cannot be
-    /// stepped in bands: any but [`Features::PULL`], [`Features::MASK`] and [`Features::TETHERS`]).
+    /// stepped in bands: [`Features::STRAIN_LIMIT`] and [`Features::LEVELS`]).
     pub fn bands_memory(&self, rows_per_band: usize) -> Result<usize, Error> {
         let count = self.band_count(rows_per_band)?;
         let l = &self.layout;
@@ -153,8 +157,11 @@ impl Cloth<'_> {
             pull,
             carry: self.carry,
         };
-        let pointers = sweep.pointers().ok_or(Error::BlockTooSmall)?;
-        let t = &mut self.tethers;
+        let mut pointers = sweep.pointers().ok_or(Error::BlockTooSmall)?;
+        let parts = Parts::new(self);
+        if l.force() {
+            pointers.pull = Some(parts.forces(&l));
+        }
         let plan = Plan {
             layout: l,
             constants,
@@ -167,10 +174,7 @@ impl Cloth<'_> {
             pointers,
             pins: self.pins.numbers.as_ptr(),
             pin_count: self.pins.count,
-            tethers: [&mut t.pin, &mut t.length, &mut t.common].map(|pair| {
-                let [first, second] = pair;
-                [first.as_mut_ptr(), second.as_mut_ptr()]
-            }),
+            parts,
             anchors,
             carry,
             borders,
@@ -285,9 +289,15 @@ impl Plan {
 
     fn run(&self, phase: u32, band: usize) {
         let per_substep = (self.phases / self.substeps.max(1)).max(1);
-        let share = (phase / per_substep + 1) as f32 / self.substeps as f32;
+        let substep = phase / per_substep;
+        let share = (substep + 1) as f32 / self.substeps as f32;
         match phase % per_substep {
-            0 => simd::run(self.width, Cross(self.band(band))),
+            0 => {
+                simd::run(self.width, Cross(self.band(band)));
+                if self.layout.force() {
+                    self.outer_forces(band, substep);
+                }
+            }
             1 => {
                 let rows = self.band(band);
                 if rows.above.is_null() {
@@ -298,6 +308,9 @@ impl Plan {
                 self.place_pins(band, share);
             }
             _ => self.tether(band),
+        }
+        if phase % per_substep + 1 == per_substep {
+            self.hold(band, share);
         }
     }
 
@@ -325,42 +338,6 @@ impl Plan {
                     }
                 }
             }
-        }
-    }
-
-    /// The tethers of the band's particles.
-    fn tether(&self, band: usize) {
-        let l = &self.layout;
-        let [first, end] = self.rows(band);
-        let (from, len) = (l.row(first), (end - first) * l.stride);
-        let offset = first * l.stride;
-        let [pin, length, common] = self.tethers;
-        // SAFETY: the numbers of the band's own rows, which no other band uses in this phase; a row begins at a multiple of
-        // 16, as do the blocks of the tethers. The anchors are only read in this phase.
-        unsafe {
-            let own = |plane: *mut f32, from: usize| core::slice::from_raw_parts_mut(plane.wrapping_add(from), len);
-            let blocks = |plane: *mut f32| {
-                let first = plane.wrapping_add(from / tethers::BLOCK);
-                core::slice::from_raw_parts_mut(first, len / tethers::BLOCK)
-            };
-            let tethers = Tethers {
-                pin: pin.map(|plane| own(plane, from)),
-                length: length.map(|plane| own(plane, from)),
-                common: common.map(blocks),
-            };
-            let anchors = self.anchors.map(|plane| core::slice::from_raw_parts(plane.cast_const(), l.plane));
-            let pull = Pull {
-                rows: end - first,
-                columns: l.columns,
-                stride: l.stride,
-                first: 0,
-                x: self.pointers.x.map(|plane| own(plane, offset)),
-                anchors: Some(anchors),
-                tethers: &tethers,
-                velocity: Some((self.pointers.v.map(|plane| own(plane, offset)), 1.0 / self.constants.dt)),
-                look: false,
-            };
-            simd::run(self.width, pull);
         }
     }
 }

@@ -104,7 +104,7 @@ impl<'a> Colliders<'a> {
 
     /// The collider at a place of the list.
     pub fn get(&self, place: usize) -> Option<Collider> {
-        decode(|i| read(self.numbers, place * COLLIDER_NUMBERS + i))
+        collider_at(self.numbers, place)
     }
 
     /// The place of a collider. Error: [`Error::NoSuchCollider`].
@@ -145,6 +145,11 @@ fn decode(number: impl Fn(usize) -> f32) -> Option<Collider> {
         from: pose(FROM),
         to: pose(TO),
     })
+}
+
+/// The collider at a place of a list.
+pub(crate) fn collider_at(numbers: &[f32], place: usize) -> Option<Collider> {
+    decode(|i| read(numbers, place * COLLIDER_NUMBERS + i))
 }
 
 /// Whether the numbers of a snapshot from `first` on are colliders that could have been added.

@@ -12,11 +12,13 @@ mod touch;
 #[cfg(test)]
 mod twin;
 
-use crate::colliders::{Collider, LocalPose, MAX_COLLIDERS, norm};
+use crate::colliders::{Collider, LocalPose, MAX_COLLIDERS, collider_at, norm};
 use crate::force::Substep;
 use crate::math::{max, min};
+use crate::passes::{Held, Holders};
 use crate::shapes::{Solid, length};
-use crate::{Cloth, Vector3, simd};
+use crate::width::Supported;
+use crate::{Vector3, simd};
 use near::PushOut;
 
 type V3 = Vector3<f32>;
@@ -180,30 +182,29 @@ struct Rules {
     recovery: f32,
 }
 
-impl Cloth<'_> {
-    /// Moves the particles out of the colliders as they are at `share` (0 to 1) of the frame.
-    pub(crate) fn apply_colliders(&mut self, c: &Substep, share: f32) {
-        let before = max(share - 1.0 / self.def.substeps as f32, 0.0);
-        let stored = (0..self.layout.max_colliders).filter_map(|place| self.colliders.get(place));
-        let mut colliders = [const { None }; MAX_COLLIDERS];
-        let mut count = 0;
-        for (to, c) in colliders.iter_mut().zip(stored) {
-            *to = Some(Moving::new(&c, before, share, self.def.rate_hz));
-            count += 1;
-        }
-        if count == 0 {
-            return;
-        }
-        let recovery = RECOVERY * min(self.grid.rest_u(), self.grid.rest_v());
-        let push = PushOut {
-            layout: &self.layout,
-            colliders: &colliders,
-            alone: count == 1,
-            rules: Rules { dt: c.dt, per_s: 1.0 / c.dt, recovery },
-            x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
-            v: [&mut *self.v.x, &mut *self.v.y, &mut *self.v.z],
-            inverse: self.inverse,
-        };
-        simd::run(self.width, push);
+/// Moves the particles of some rows out of the colliders as they are at `share` (0 to 1) of the frame.
+pub(crate) fn push_out(all: &Holders<'_>, width: Supported, c: &Substep, share: f32, of: Held<'_>) {
+    let before = max(share - 1.0 / all.substeps as f32, 0.0);
+    let stored = (0..all.layout.max_colliders).filter_map(|place| collider_at(all.colliders, place));
+    let mut colliders = [const { None }; MAX_COLLIDERS];
+    let mut count = 0;
+    for (to, c) in colliders.iter_mut().zip(stored) {
+        *to = Some(Moving::new(&c, before, share, all.rate_hz));
+        count += 1;
     }
+    if count == 0 {
+        return;
+    }
+    let [from, to] = of.rows;
+    let push = PushOut {
+        layout: all.layout,
+        rows: to.saturating_sub(from),
+        colliders: &colliders,
+        alone: count == 1,
+        rules: Rules { dt: c.dt, per_s: 1.0 / c.dt, recovery: RECOVERY * all.spacing },
+        x: of.x,
+        v: of.v,
+        inverse: of.inverse,
+    };
+    simd::run(width, push);
 }

@@ -22,7 +22,7 @@
 use crate::around::{Around, LANES};
 use crate::layout::Layout;
 use crate::simd::{Pass, Vector};
-use crate::{Cloth, ClothDef, Grid, simd};
+use crate::{Cloth, ClothDef, Grid};
 
 /// Factors of the terms in N/m. In f64, where those of the smallest cells are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,30 +56,21 @@ impl Cloth<'_> {
         if self.layout.hinge { Rigidity::new(&self.grid, &self.def).bound() } else { 0.0 }
     }
 
-    /// Adds the forces of the hinges in N to the planes of forces.
-    pub(crate) fn add_hinges(&mut self) {
-        let l = self.layout;
+    /// The factors of the hinges as far as the budget keeps them; none where they give no force.
+    pub(crate) fn hinge_factors(&self) -> Option<Factors> {
+        if !self.layout.hinge {
+            return None;
+        }
         let all = Rigidity::new(&self.grid, &self.def);
         let kept = f64::from(self.report.hinge_fraction);
         let k = Factors { u: (all.u * kept) as f32, v: (all.v * kept) as f32, twist: (all.twist * kept) as f32 };
-        if k.u == 0.0 && k.v == 0.0 && k.twist == 0.0 {
-            return;
-        }
-        let [x, y, z] = &mut self.force;
-        let bend = Bend {
-            layout: &l,
-            factors: k,
-            x: [&*self.x.x, &*self.x.y, &*self.x.z],
-            mask: self.mask,
-            force: [&mut **x, &mut **y, &mut **z],
-        };
-        simd::run(self.width, bend);
+        (k.u != 0.0 || k.v != 0.0 || k.twist != 0.0).then_some(k)
     }
 }
 
 /// [`Rigidity`] as far as the budget keeps it.
 #[derive(Clone, Copy)]
-struct Factors {
+pub(crate) struct Factors {
     u: f32,
     v: f32,
     twist: f32,
@@ -192,13 +183,16 @@ impl Rows {
     }
 }
 
-/// Adds the forces of the hinges to those on the particles.
-struct Bend<'p> {
-    layout: &'p Layout,
-    factors: Factors,
-    x: [&'p [f32]; 3],
-    mask: &'p [f32],
-    force: [&'p mut [f32]; 3],
+/// Adds the forces of the hinges in N to those on the particles of some rows.
+pub(crate) struct Bend<'p> {
+    pub layout: &'p Layout,
+    pub factors: Factors,
+    /// The rows, from and to.
+    pub rows: [usize; 2],
+    pub x: [&'p [f32]; 3],
+    pub mask: &'p [f32],
+    /// The forces of these rows.
+    pub force: [&'p mut [f32]; 3],
 }
 
 impl Pass for Bend<'_> {
@@ -212,7 +206,8 @@ impl Pass for Bend<'_> {
         let last = l.width.saturating_sub(LANES);
         let columns = [0, LANES, last.saturating_sub(LANES), last].map(|first| Columns::new(l, first, &k));
         let [first, between, last_but_one, last] = &columns;
-        for row in 0..l.rows {
+        let [from, to] = self.rows;
+        for row in from..to {
             let rows = Rows::new(l, row, &k);
             for block in 0..blocks {
                 let columns = match blocks - block {
@@ -232,6 +227,7 @@ impl Bend<'_> {
     #[inline(always)]
     fn block<V: Vector>(&mut self, zero: V, at: usize, rows: &Rows, columns: &Columns) {
         let stride = self.layout.stride;
+        let begin = self.layout.row(self.rows[0]);
         let mask = Around::new(self.mask, at, stride);
         let mut lane = 0;
         while lane < LANES {
@@ -242,7 +238,7 @@ impl Bend<'_> {
             for (x, force) in self.x.into_iter().zip(&mut self.force) {
                 // the planes have room for whole blocks
                 if let Some(x) = Around::new(x, at, stride) {
-                    let at = at.wrapping_add(lane);
+                    let at = at.wrapping_add(lane).wrapping_sub(begin);
                     (zero.read(force, at) + weights.force(zero, &x, lane)).write(force, at);
                 }
             }
@@ -260,7 +256,7 @@ mod tests {
 
     use super::*;
     use crate::width::Supported;
-    use crate::{Features, GridDef, Width, noise};
+    use crate::{Features, GridDef, Width, noise, simd};
 
     const K: Factors = Factors { u: 3.0, v: 2.0, twist: 5.0 };
 
@@ -285,8 +281,9 @@ mod tests {
         let in_width = |width: Width| {
             let (mut force, mut y, mut z) = (vec![0.0; l.plane], vec![0.0; l.plane], vec![0.0; l.plane]);
             let mask = mask.unwrap_or(&[]);
-            let force_of = [&mut force[..], &mut y[..], &mut z[..]];
-            let bend = Bend { layout: l, factors: K, x: [x; 3], mask, force: force_of };
+            let begin = l.row(0);
+            let force_of = [&mut force[begin..], &mut y[begin..], &mut z[begin..]];
+            let bend = Bend { layout: l, factors: K, rows: [0, l.rows], x: [x; 3], mask, force: force_of };
             Supported::new(width).map(|width| simd::run(width, bend)).map(|()| force)
         };
         let single = in_width(Width::Scalar).unwrap();

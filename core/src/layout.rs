@@ -124,6 +124,16 @@ impl Layout {
         16 + (row + 2) * self.stride
     }
 
+    /// The rows of a plane, without what is spare before and behind them.
+    pub fn all_rows<'p>(&self, plane: &'p [f32]) -> &'p [f32] {
+        plane.get(self.row(0)..self.row(self.rows)).unwrap_or(&[])
+    }
+
+    /// [`Layout::all_rows`], to be written.
+    pub fn all_rows_mut<'p>(&self, plane: &'p mut [f32]) -> &'p mut [f32] {
+        plane.get_mut(self.row(0)..self.row(self.rows)).unwrap_or(&mut [])
+    }
+
     /// Place of a particle in a plane.
     #[inline(always)]
     pub fn at(&self, row: usize, column: usize) -> usize {

@@ -81,19 +81,16 @@ impl Cloth<'_> {
         }
         Ok(if self.layout.mass { read(self.masses, at) } else { self.mass })
     }
+}
 
-    /// Adds the weight of each particle in N to the planes of forces.
-    pub(crate) fn add_weight(&mut self) {
-        let l = self.layout;
-        for (force, g) in self.force.iter_mut().zip(self.ambient.gravity()) {
-            for row in 0..l.rows {
-                let at = l.row(row);
-                let Some(force) = force.get_mut(at..at + l.columns) else {
-                    return;
-                };
-                for (f, m) in force.iter_mut().zip(span(self.masses, at, l.columns)) {
-                    *f += m * g;
-                }
+/// Adds the weight of each particle in N to the forces of some rows, from and to.
+pub(crate) fn add_weight(l: &Layout, rows: [usize; 2], masses: &[f32], gravity: [f32; 3], force: &mut [&mut [f32]; 3]) {
+    let [from, to] = rows;
+    for (force, g) in force.iter_mut().zip(gravity) {
+        for row in from..to {
+            let force = force.get_mut((row - from) * l.stride..).unwrap_or(&mut []);
+            for (f, m) in force.iter_mut().zip(span(masses, l.row(row), l.columns)) {
+                *f += m * g;
             }
         }
     }

@@ -218,15 +218,11 @@ impl Cloth<'_> {
         let pull_planes = if pull { self.pull.as_mut_slice() } else { &mut [] };
         let mut next = 0;
         for plane in planes.into_iter().chain(pull_planes.iter_mut().map(|p| &mut **p)) {
-            for row in 0..l.rows {
-                let at = l.row(row);
-                let row = plane.get_mut(at..at + l.columns).unwrap_or(&mut []);
-                let from = numbers.get(next..next + row.len()).unwrap_or(&[]);
-                for (to, from) in row.iter_mut().zip(from) {
-                    *to = f32::from_le_bytes(*from);
-                }
-                next += l.columns;
+            let from = numbers.get(next..next + self.grid.particles()).unwrap_or(&[]);
+            for (row, from) in from.chunks_exact(l.columns.max(1)).enumerate() {
+                take_floats(plane.get_mut(l.row(row)..).unwrap_or(&mut []), from);
             }
+            next += self.grid.particles();
         }
         // the budget depends on them
         self.stale |= self.ambient.damping() != ambient.damping() || self.ambient.rest_scale() != ambient.rest_scale();
@@ -296,11 +292,27 @@ impl Cloth<'_> {
 /// Whether no number has the exponent of infinity and NaN: in integers, which need not be summed in an order.
 fn all_finite(numbers: &[[u8; 4]]) -> bool {
     const EXPONENT: u32 = 0x7f80_0000;
-    let mut bad = 0u32;
+    let mut carried = 0u32;
     for b in numbers {
-        bad |= u32::from(u32::from_le_bytes(*b) & EXPONENT == EXPONENT);
+        // a full exponent carries into the sign
+        carried |= (u32::from_le_bytes(*b) & EXPONENT) + (1 << 23);
     }
-    bad == 0
+    carried >> 31 == 0
+}
+
+/// Bytes to the numbers that a row begins with. In blocks of eight: a row is short, and a loop over single numbers has more
+/// to prepare than to copy.
+#[inline(always)]
+fn take_floats(to: &mut [f32], from: &[[u8; 4]]) {
+    let (to, _) = to.split_at_mut_checked(from.len()).unwrap_or_default();
+    let (blocks, rest) = to.as_chunks_mut::<8>();
+    let (from_blocks, from_rest) = from.as_chunks::<8>();
+    for (to, from) in blocks.iter_mut().zip(from_blocks) {
+        *to = from.map(f32::from_le_bytes);
+    }
+    for (to, from) in rest.iter_mut().zip(from_rest) {
+        *to = f32::from_le_bytes(*from);
+    }
 }
 
 fn put(rest: &mut &mut [u8], bytes: &[u8]) {
@@ -312,7 +324,12 @@ fn put(rest: &mut &mut [u8], bytes: &[u8]) {
 
 fn put_floats(rest: &mut &mut [u8], values: &[f32]) {
     if let Some((head, tail)) = core::mem::take(rest).split_at_mut_checked(4 * values.len()) {
-        for (to, from) in head.as_chunks_mut::<4>().0.iter_mut().zip(values) {
+        let (to_blocks, to_rest) = head.as_chunks_mut::<4>().0.as_chunks_mut::<8>();
+        let (blocks, last) = values.as_chunks::<8>();
+        for (to, from) in to_blocks.iter_mut().zip(blocks) {
+            *to = from.map(f32::to_le_bytes);
+        }
+        for (to, from) in to_rest.iter_mut().zip(last) {
             *to = from.to_le_bytes();
         }
         *rest = tail;

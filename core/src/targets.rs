@@ -4,13 +4,12 @@
 //! `backstop_distance` behind the target, against the normal of the skin: the motion and separation constraints of other
 //! engines. Velocity against a limit, relative to the target, is taken; along it, it is kept.
 
-use crate::force::Substep;
 use crate::frame::Motion;
 use crate::layout::{Layout, copy, read, take, write};
 use crate::math::{max, min, sqrt};
 use crate::shapes::{direction, length};
 use crate::simd::{Pass, Three, Vector};
-use crate::{Cloth, Error, Vector3, simd};
+use crate::{Cloth, Error, Vector3};
 
 type V3 = Vector3<f32>;
 
@@ -84,16 +83,17 @@ impl<'a> Targets<'a> {
         Ok(Targets { planes: take(block, Self::numbers(l))? })
     }
 
-    fn vector(&self, plane: usize, size: usize, at: usize) -> V3 {
-        let n = |i: usize| read(self.planes, (plane + i) * size + at);
-        V3::new(n(0), n(1), n(2))
-    }
-
     fn put(&mut self, plane: usize, size: usize, at: usize, v: V3) {
         for (i, x) in v.iter().enumerate() {
             write(self.planes, (plane + i) * size + at, *x);
         }
     }
+}
+
+/// Three planes of targets of `size` numbers each, from one on, at a place.
+fn vector(planes: &[f32], plane: usize, size: usize, at: usize) -> V3 {
+    let n = |i: usize| read(planes, (plane + i) * size + at);
+    V3::new(n(0), n(1), n(2))
 }
 
 /// Whether the numbers of a snapshot from `first` on are targets that could have been set.
@@ -209,8 +209,8 @@ impl Cloth<'_> {
             for column in 0..l.columns {
                 let at = l.at(row, column);
                 for from in [0, TO] {
-                    let (p, n) =
-                        (self.targets.vector(from, l.plane, at), self.targets.vector(from + NORMAL, l.plane, at));
+                    let planes = &*self.targets.planes;
+                    let (p, n) = (vector(planes, from, l.plane, at), vector(planes, from + NORMAL, l.plane, at));
                     let stays = from == TO && in_world;
                     let p = if stays { motion.keep(p.into()) } else { motion.carry(p.into()) };
                     self.targets.put(from, l.plane, at, p.into());
@@ -291,20 +291,6 @@ impl Cloth<'_> {
         }
     }
 
-    /// Keeps the particles within their distance of the targets as they are at `share` (0 to 1) of the frame.
-    pub(crate) fn apply_targets(&mut self, _c: &Substep, share: f32) {
-        let hold = Hold {
-            layout: &self.layout,
-            targets: &self.targets,
-            rate_hz: self.def.rate_hz,
-            share,
-            x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
-            v: [&mut *self.v.x, &mut *self.v.y, &mut *self.v.z],
-            inverse: self.inverse,
-        };
-        simd::run(self.width, hold);
-    }
-
     /// The next frame starts where this one ended; after a frame that was taken back (`finite` false), where it began.
     pub(crate) fn finish_targets(&mut self, finite: bool) {
         let (from, rest) = self.targets.planes.split_at_mut((TO * self.layout.plane).min(self.targets.planes.len()));
@@ -317,25 +303,30 @@ impl Cloth<'_> {
     }
 }
 
-/// Holds the particles within their limits.
-struct Hold<'p, 'a> {
-    layout: &'p Layout,
-    targets: &'p Targets<'a>,
-    rate_hz: f32,
-    share: f32,
-    x: [&'p mut [f32]; 3],
-    v: [&'p mut [f32]; 3],
-    inverse: &'p [f32],
+/// Holds the particles of some rows within their distance of the targets as they are at `share` (0 to 1) of the frame.
+pub(crate) struct Hold<'p> {
+    pub layout: &'p Layout,
+    /// The planes of all targets.
+    pub targets: &'p [f32],
+    pub rate_hz: f32,
+    pub share: f32,
+    /// The rows, from and to.
+    pub rows: [usize; 2],
+    /// Positions, velocities and inverse masses of these rows.
+    pub x: [&'p mut [f32]; 3],
+    pub v: [&'p mut [f32]; 3],
+    pub inverse: &'p [f32],
 }
 
-impl Pass for Hold<'_, '_> {
+impl Pass for Hold<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<V: Vector>(mut self, zero: V) {
-        for row in 0..self.layout.rows {
+        let [from, to] = self.rows;
+        for row in 0..to.saturating_sub(from) {
             for column in (0..self.layout.width).step_by(V::LANES) {
-                let at = self.layout.at(row, column);
+                let at = row * self.layout.stride + column;
                 let held = self.may_hold(zero, at);
                 if held.any() {
                     let mut each = [0.0; 16];
@@ -351,13 +342,14 @@ impl Pass for Hold<'_, '_> {
     }
 }
 
-impl Hold<'_, '_> {
-    /// Which particles from a place on a limit holds: 1 where one may. A quick look; [`Aim::hold`] looks exactly.
+impl Hold<'_> {
+    /// Which particles from a place of the rows on a limit holds: 1 where one may. A quick look; [`Aim::hold`] looks exactly.
     #[inline(always)]
     fn may_hold<V: Vector>(&self, zero: V, at: usize) -> V {
         let (size, share) = (self.layout.plane, zero.all(self.share));
-        let planes = &*self.targets.planes;
-        let place = |plane: usize| plane.wrapping_mul(size).wrapping_add(at);
+        let planes = self.targets;
+        let of_all = self.layout.row(self.rows[0]).wrapping_add(at);
+        let place = |plane: usize| plane.wrapping_mul(size).wrapping_add(of_all);
         let (most, radius) = (zero.read(planes, place(MAX_DISTANCE)), zero.read(planes, place(RADIUS)));
         let backstops = radius.any_above(zero);
         if !backstops && !zero.all(FREE).any_above(most) {
@@ -404,18 +396,19 @@ impl Hold<'_, '_> {
 
     fn aim(&self, at: usize) -> Aim {
         let (size, rate, share, t) = (self.layout.plane, self.rate_hz, self.share, self.targets);
+        let at = self.layout.row(self.rows[0]) + at;
         let mix = |from: V3, to: V3| if share < 1.0 { from + (to - from) * share } else { to };
-        let (p, q) = (t.vector(0, size, at), t.vector(TO, size, at));
-        let (m, n) = (t.vector(NORMAL, size, at), t.vector(TO + NORMAL, size, at));
+        let (p, q) = (vector(t, 0, size, at), vector(t, TO, size, at));
+        let (m, n) = (vector(t, NORMAL, size, at), vector(t, TO + NORMAL, size, at));
         Aim {
             position: mix(p, q),
             velocity: (q - p) * rate,
             // opposite ones have no middle
             normal: direction(mix(m, n)).0,
             turning: (n - m) * rate,
-            max_distance: read(t.planes, MAX_DISTANCE * size + at),
-            radius: read(t.planes, RADIUS * size + at),
-            distance: read(t.planes, DISTANCE * size + at),
+            max_distance: read(t, MAX_DISTANCE * size + at),
+            radius: read(t, RADIUS * size + at),
+            distance: read(t, DISTANCE * size + at),
         }
     }
 }

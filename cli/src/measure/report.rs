@@ -14,7 +14,8 @@ use super::page::{self, Picture, Section};
 use crate::failure::{self, Failure, complain};
 use crate::output::{self, Folder};
 
-/// What a part printed, behind the command that printed it. It stands only beside a part that is whole.
+/// What a part printed, behind the command and the digest of the program that printed it. It stands only beside a part that
+/// is whole.
 const SUMMARY: &str = "summary.txt";
 
 /// `taut measure report`.
@@ -26,7 +27,7 @@ pub struct Args {
     /// A part; give it several times for several [default: all].
     #[arg(long = "only", value_name = "PART", value_enum)]
     pub only: Vec<Part>,
-    /// Folder for report.html and a folder of each part. Parts that are whole there are not run again.
+    /// Folder for report.html and a folder of each part. Parts that this program has finished there are not run again.
     #[arg(long, value_name = "DIR", default_value = "out/report")]
     pub out: PathBuf,
     /// Tells what was written as JSON on stdout.
@@ -190,16 +191,17 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let parts: Vec<Part> =
         Part::value_variants().iter().copied().filter(|p| args.only.is_empty() || args.only.contains(p)).collect();
     let folder = Folder::open(&args.out, &["report.html"])?;
+    let program = Program::this()?;
     let (mut sections, mut written) = (Vec::new(), Vec::new());
     for (i, part) in parts.iter().enumerate() {
         let (name, told, command) = (part.name(), part.told(), part.command(args.full));
         let home = args.out.join(&name);
         let line = typed(&command);
-        let text = match summary(&home, &line) {
+        let text = match program.summary(&home, &line) {
             Some(text) => text,
             None => {
                 complain(&format!("{} of {}: {line}", i + 1, parts.len()));
-                measure(&home, &command, &line)?
+                program.measure(&home, &command, &line)?
             }
         };
         let pictures = pictures(&home, told.title)?;
@@ -228,24 +230,48 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     failure::print(&format!("Wrote {page} ({:.1} MB)\n", html.len() as f64 / 1e6))
 }
 
-/// What an earlier run of the same command printed, if the part is whole.
-fn summary(home: &Path, line: &str) -> Option<String> {
-    let text = fs::read_to_string(home.join(SUMMARY)).ok()?;
-    text.strip_prefix(line)?.strip_prefix('\n').map(str::to_string)
+/// The program that measures: a part of another one, or of another built-in generator, is not what it would find.
+struct Program {
+    path: PathBuf,
+    /// Of the bytes of the file.
+    digest: String,
 }
 
-/// Runs a part into its folder and keeps what it printed.
-fn measure(home: &Path, command: &[&str], line: &str) -> Result<String, Failure> {
-    let program = std::env::current_exe().map_err(|e| Failure::new(format_args!("cannot find this program: {e}")))?;
-    let arguments = command.iter().map(OsString::from).chain([OsString::from("--out"), home.into()]);
-    let done = Command::new(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::inherit()).output();
-    let done = done.map_err(|e| Failure::new(format_args!("cannot run `{line}`: {e}")))?;
-    if !done.status.success() {
-        return Err(Failure::new(format_args!("`{line}` ended with {}: the page is not written", done.status)));
+impl Program {
+    /// The one that runs.
+    fn this() -> Result<Program, Failure> {
+        let path = std::env::current_exe().map_err(|e| Failure::new(format_args!("cannot find this program: {e}")))?;
+        let bytes = fs::read(&path).map_err(|e| unreadable(&path, e))?;
+        let mut hash = taut::Hash64::new();
+        hash.bulk(&bytes);
+        Ok(Program { path, digest: format!("{:016x}", hash.finish()) })
     }
-    let text = String::from_utf8(done.stdout).map_err(|_| Failure::new(format_args!("`{line}` printed no text")))?;
-    output::write(&home.join(SUMMARY), format!("{line}\n{text}").as_bytes())?;
-    Ok(text)
+
+    /// What a summary begins with.
+    fn head(&self, line: &str) -> String {
+        format!("{line}\nprogram {}\n", self.digest)
+    }
+
+    /// What an earlier run of the same command printed, if the part is whole.
+    fn summary(&self, home: &Path, line: &str) -> Option<String> {
+        let text = fs::read_to_string(home.join(SUMMARY)).ok()?;
+        text.strip_prefix(&self.head(line)).map(str::to_string)
+    }
+
+    /// Runs a part into its folder and keeps what it printed. What lies there of a part that was interrupted, or made by
+    /// another program, is for the command to take up or to refuse.
+    fn measure(&self, home: &Path, command: &[&str], line: &str) -> Result<String, Failure> {
+        let arguments = command.iter().map(OsString::from).chain([OsString::from("--out"), home.into()]);
+        let done = Command::new(&self.path).args(arguments).stdin(Stdio::null()).stderr(Stdio::inherit()).output();
+        let done = done.map_err(|e| Failure::new(format_args!("cannot run `{line}`: {e}")))?;
+        if !done.status.success() {
+            return Err(Failure::new(format_args!("`{line}` ended with {}: the page is not written", done.status)));
+        }
+        let text =
+            String::from_utf8(done.stdout).map_err(|_| Failure::new(format_args!("`{line}` printed no text")))?;
+        output::write(&home.join(SUMMARY), (self.head(line) + &text).as_bytes())?;
+        Ok(text)
+    }
 }
 
 /// The table without what was written where.
@@ -254,9 +280,12 @@ fn tables(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n").trim_end().to_string()
 }
 
+fn unreadable(path: &Path, e: std::io::Error) -> Failure {
+    Failure::new(format_args!("cannot read {}: {e}", path.display()))
+}
+
 /// The pictures of a folder, in the order of their names.
 fn pictures(home: &Path, title: &str) -> Result<Vec<Picture>, Failure> {
-    let unreadable = |path: &Path, e: std::io::Error| Failure::new(format_args!("cannot read {}: {e}", path.display()));
     let mut paths = Vec::new();
     for entry in fs::read_dir(home).map_err(|e| unreadable(home, e))? {
         let path = entry.map_err(|e| unreadable(home, e))?.path();
@@ -282,12 +311,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_is_whole_only_with_the_summary_of_its_own_command() {
+    fn a_part_is_whole_only_with_the_summary_of_its_own_command_and_program() {
         let home = tempfile::tempdir().expect("a folder");
-        assert_eq!(summary(home.path(), "taut gallery"), None);
-        fs::write(home.path().join(SUMMARY), "taut gallery --seed 3\na table\n").expect("written");
-        assert_eq!(summary(home.path(), "taut gallery"), None, "another command");
-        assert_eq!(summary(home.path(), "taut gallery --seed 3").as_deref(), Some("a table\n"));
+        let program = |digest: &str| Program { path: PathBuf::new(), digest: digest.to_string() };
+        let new = program("12");
+        assert_eq!(new.summary(home.path(), "taut gallery"), None);
+        fs::write(home.path().join(SUMMARY), "taut gallery --seed 3\nprogram 12\na table\n").expect("written");
+        assert_eq!(new.summary(home.path(), "taut gallery"), None, "another command");
+        assert_eq!(new.summary(home.path(), "taut gallery --seed 3").as_deref(), Some("a table\n"));
+        assert_eq!(program("13").summary(home.path(), "taut gallery --seed 3"), None, "another program");
     }
 
     #[test]

@@ -49,7 +49,10 @@ fn the_page_binds_parts_that_are_there_and_runs_the_others() {
     let home = home();
     let part = home.path().join("r/gallery");
     fs::create_dir_all(&part).expect("made");
-    fs::write(part.join("summary.txt"), "taut gallery\nfabric  max %\nWrote x.png\n").expect("written");
+    let mut hash = taut::Hash64::new();
+    hash.bulk(&fs::read(env!("CARGO_BIN_EXE_taut")).expect("read"));
+    let summary = format!("taut gallery\nprogram {:016x}\nfabric  max %\nWrote x.png\n", hash.finish());
+    fs::write(part.join("summary.txt"), summary).expect("written");
     fs::write(part.join("hang2.png"), b"not looked at").expect("written");
     let args = ["measure", "report", "--only", "gallery", "--out", "r", "--json"];
     let told: Value = serde_json::from_str(&succeeds(home.path(), &args).stdout).expect("JSON");

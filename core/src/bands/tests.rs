@@ -3,13 +3,25 @@ extern crate std;
 use std::vec;
 use std::vec::Vec;
 
+use super::REFUSED;
+use crate::colliders::MAX_COLLIDERS;
 use crate::field::FieldView;
-use crate::{Cloth, ClothDef, Error, Families, Features, Grid, GridDef, StepFlags, Vector3, Width, noise};
+use crate::{
+    Air, Cloth, ClothDef, ColliderDef, ColliderId, Error, Families, Features, Grid, GridDef, Pose, Shape, StepFlags,
+    Target, TargetLimit, Vector3, Width, noise,
+};
 
 /// A sheet in motion with a stiffness of its own at every particle, an inertia field and two pins of which one moves.
 fn sheet<'a>(rows: u32, columns: u32, families: Families, features: Features, block: &'a mut Vec<f32>) -> Cloth<'a> {
     let grid = Grid::new(&GridDef { rows, columns, families, ..GridDef::default() }).unwrap();
-    let def = ClothDef { features, substeps: 5, inertia_radius_m: 0.2, v_axis: [0.0, 0.0, 1.0], ..ClothDef::default() };
+    let def = ClothDef {
+        features,
+        substeps: 5,
+        inertia_radius_m: 0.2,
+        v_axis: [0.0, 0.0, 1.0],
+        hinge_rigidity_n_m: 1e-4,
+        ..ClothDef::default()
+    };
     block.resize(Cloth::memory(&grid, &def).unwrap(), 0.0);
     let mut cloth = Cloth::create(&grid, &def, block).unwrap();
     let n = (rows * columns) as usize;
@@ -23,13 +35,56 @@ fn sheet<'a>(rows: u32, columns: u32, families: Families, features: Features, bl
     }
     cloth.pin(0).unwrap();
     cloth.pin(n / 2).unwrap();
+    if features.contains(Features::AIR) {
+        cloth.set_air(&Air { wind_m_s: [3.0, 1.0, 4.0], gust: 0.5, ..Air::default() }).unwrap();
+    }
+    if features.contains(Features::MASS) {
+        let each = cloth.particle_mass_kg();
+        let masses: Vec<f32> = (0..n).map(|i| each * (0.5 + noise::uniform(6, i as u32))).collect();
+        cloth.set_masses(&masses).unwrap();
+    }
+    if features.contains(Features::TARGETS) {
+        let limit = |particle: usize| TargetLimit {
+            max_distance_m: if particle.is_multiple_of(3) { 0.02 } else { f32::INFINITY },
+            backstop_radius_m: if particle.is_multiple_of(5) { 0.1 } else { 0.0 },
+            backstop_distance_m: 0.001,
+        };
+        cloth.set_target_limits(limit).unwrap();
+    }
+    if features.contains(Features::COLLIDERS) {
+        let (sphere, capsule) = (
+            Shape::Sphere { radius_m: 0.2 },
+            Shape::Capsule { ends_m: [[0.0, -0.1, 0.0], [0.0, 0.1, 0.0]], radii_m: [0.05, 0.04] },
+        );
+        for (shape, x) in [(sphere, 0.3), (capsule, 0.7)] {
+            cloth.add_collider(&ColliderDef::new(shape, at(x, 0))).unwrap();
+        }
+    }
     cloth
+}
+
+/// Where a collider is after a number of frames: it comes up from below.
+fn at(x: f64, frame: u32) -> Pose {
+    Pose::at(Vector3::new(x, 0.012 * f64::from(frame) - 0.25, 0.5))
 }
 
 fn drive(cloth: &mut Cloth<'_>, frame: u32) {
     cloth.move_pin(0, Vector3::new(0.0, 0.02 * f64::from(frame), 0.0)).unwrap();
     if cloth.def().features.contains(Features::PULL) {
         cloth.add_force(7, Vector3::new(0.0, 0.1, 0.3)).unwrap();
+    }
+    if cloth.def().features.contains(Features::TARGETS) {
+        let (columns, each) = (cloth.grid().columns(), 1.0 / (cloth.grid().columns() - 1) as f32);
+        let target = |particle: usize| Target {
+            position_m: Vector3::new((particle % columns) as f32, -0.03 * frame as f32, (particle / columns) as f32)
+                .component_mul(&Vector3::new(each, 1.0, 0.02)),
+            normal: Vector3::new(0.1, 1.0, 0.0),
+        };
+        cloth.move_targets(Vector3::zeros(), target).unwrap();
+    }
+    for (place, x) in [(0, 0.3), (1, 0.7)].into_iter().take(cloth.collider_count()) {
+        // the first of its place
+        cloth.move_collider(ColliderId(MAX_COLLIDERS as u32 + place), &at(x, frame)).unwrap();
     }
 }
 
@@ -50,9 +105,23 @@ fn bands_have_the_bits_of_the_step() {
     let no_bend = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
     let no_shear = Families(Families::STRUCTURAL.0 | Families::BEND.0);
     let masked_tethers = Features(Features::MASK.0 | Features::TETHERS.0);
+    let every_feature = Features(!REFUSED & ((1 << 11) - 1));
     for (rows, columns, per_band) in [(40, 33, 8), (31, 17, 8), (97, 5, 16), (24, 64, 11), (9, 9, 8)] {
         for families in [all, no_bend, no_shear, Families::STRUCTURAL] {
-            for features in [Features::NONE, Features::PULL, Features::TETHERS, Features::MASK, masked_tethers] {
+            let mut without = Vec::new();
+            for features in [
+                Features::NONE,
+                Features::PULL,
+                Features::TETHERS,
+                Features::MASK,
+                masked_tethers,
+                Features::AIR,
+                Features::HINGE,
+                Features::MASS,
+                Features::TARGETS,
+                Features::COLLIDERS,
+                every_feature,
+            ] {
                 for width in Width::ALL.into_iter().filter(|w| w.is_supported()) {
                     let (mut one, mut other) = (Vec::new(), Vec::new());
                     let mut plain = sheet(rows, columns, families, features, &mut one);
@@ -70,6 +139,12 @@ fn bands_have_the_bits_of_the_step() {
                         assert_eq!(plain.state_hash(), banded.state_hash(), "{rows} x {columns}, frame {i}, {width:?}");
                     }
                     assert!(plain.strain().largest > 1e-4, "it moves");
+                    let ends: Vec<_> = (0..(rows * columns) as usize).map(|i| plain.position(i).unwrap()).collect();
+                    if features == Features::NONE {
+                        without = ends;
+                    } else {
+                        assert_ne!(ends, without, "{features:?} does something");
+                    }
                 }
             }
         }
@@ -79,14 +154,15 @@ fn bands_have_the_bits_of_the_step() {
 #[test]
 fn bands_of_any_number_of_threads_have_the_same_bits() {
     let mut block = Vec::new();
-    let mut plain = sheet(64, 48, Families::ALL, Features::TETHERS, &mut block);
+    let features = Features(!REFUSED & ((1 << 11) - 1));
+    let mut plain = sheet(64, 48, Families::ALL, features, &mut block);
     for i in 1..=10 {
         drive(&mut plain, i);
         plain.step().unwrap();
     }
     for threads in 1..=4u32 {
         let mut block = Vec::new();
-        let mut cloth = sheet(64, 48, Families::ALL, Features::TETHERS, &mut block);
+        let mut cloth = sheet(64, 48, Families::ALL, features, &mut block);
         let mut memory = vec![0.0; cloth.bands_memory(8).unwrap()];
         for i in 1..=10 {
             drive(&mut cloth, i);

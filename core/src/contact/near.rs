@@ -16,10 +16,12 @@ const BLOCK: usize = 16;
 /// Moves the particles out of the colliders.
 pub(super) struct PushOut<'p> {
     pub layout: &'p Layout,
+    pub rows: usize,
     pub colliders: &'p [Option<Moving>; MAX_COLLIDERS],
     /// Whether there is only one collider.
     pub alone: bool,
     pub rules: Rules,
+    /// Positions, velocities and inverse masses of the rows.
     pub x: [&'p mut [f32]; 3],
     pub v: [&'p mut [f32]; 3],
     pub inverse: &'p [f32],
@@ -60,7 +62,7 @@ impl Pass for PushOut<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(mut self, zero: V) {
-        let rows = self.layout.rows;
+        let rows = self.rows;
         let dt = zero.all(self.rules.dt);
         let mut first = 0;
         while first < rows {
@@ -90,7 +92,7 @@ impl PushOut<'_> {
     #[inline(always)]
     fn boxes<V: Vector>(&self, zero: V, row: usize) -> Boxes<V> {
         let l = self.layout;
-        let at = l.row(row);
+        let at = row * l.stride;
         let cut = |plane| span(plane, at, l.width).as_chunks::<BLOCK>().0;
         let [x, y, z] = &self.x;
         let (x, y, z) = (cut(x), cut(y), cut(z));
@@ -143,7 +145,7 @@ impl PushOut<'_> {
     /// Moves the particles of a row out of some colliders and whatever those push them into.
     #[inline(always)]
     fn row<V: Vector>(&mut self, zero: V, row: usize, near: u32, way: V) {
-        let first = self.layout.row(row);
+        let first = row * self.layout.stride;
         let mut column = 0;
         while column < self.layout.width {
             let at = first.wrapping_add(column);

@@ -11,8 +11,7 @@ use crate::layout::read;
 use crate::math::sqrt;
 use crate::shapes::direction;
 use crate::simd::{Pass, Three, Vector, run};
-use crate::width::Supported;
-use crate::{ClothDef, ColliderDef, Features, Grid, GridDef, Pose, Shape, Width, noise};
+use crate::{Cloth, ClothDef, ColliderDef, Features, Grid, GridDef, Pose, Shape, Width, noise};
 
 fn into_frame(frame: &Frame, x: V3) -> V3 {
     let d = x - frame.position;
@@ -422,7 +421,7 @@ fn vectors_push_out_as_particles_on_their_own() {
                 wanted.push((at, [to, v_to]));
             }
         }
-        cloth.apply_colliders(&c, 0.5);
+        cloth.constrain(&c, 0.5);
         for (at, [x, v]) in wanted {
             let found = [&*cloth.x.x, &*cloth.x.y, &*cloth.x.z, &*cloth.v.x, &*cloth.v.y, &*cloth.v.z];
             let found = found.map(|plane| read(plane, at).to_bits());
