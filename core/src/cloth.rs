@@ -161,8 +161,8 @@ impl<'a> Cloth<'a> {
         Ok(cloth)
     }
 
-    /// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
-    /// Stiffness, masses and mask stay.
+    /// Back to the start: flat, at rest, nothing pinned, no collider, step 0, gravity, damping, air, targets, frame and rest
+    /// lengths as they were made. Stiffness, masses and mask stay.
     pub fn reset(&mut self) {
         in_default_environment(|| self.start_again());
     }

@@ -106,10 +106,21 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// A level sheet that falls on two corners, held by tethers.
+// A level sheet that falls on two corners, held by tethers, in the wind and onto a ball.
 static void start(uint32_t side)
 {
     TRY(taut_cloth_reset(cloth));
+    taut_air air = taut_air_default();
+    air.wind_m_s[0] = 3.0f;
+    air.gust = 0.5f;
+    TRY(taut_cloth_set_air(cloth, &air));
+    taut_collider_def ball = taut_collider_def_default(TAUT_SHAPE_SPHERE);
+    ball.radius_m[0] = 0.2f;
+    ball.pose.position_m[0] = 0.5;
+    ball.pose.position_m[1] = -0.3;
+    ball.pose.position_m[2] = 0.5;
+    uint32_t id;
+    TRY(taut_cloth_collider_add(cloth, &ball, &id));
     TRY(taut_cloth_set_stiffness_uniform(cloth, 1e6f, 1e6f, 3e5f, 2e4f));
     TRY(taut_cloth_pin(cloth, 0));
     TRY(taut_cloth_pin(cloth, side - 1));
@@ -132,7 +143,7 @@ int main(int argc, char **argv)
     TRY(taut_grid_create(&grid_def, grid_block, sizeof grid_block, &grid));
     taut_cloth_def def = taut_cloth_def_default(grid);
     def.substeps = SUBSTEPS;
-    def.features = TAUT_FEATURE_TETHERS;
+    def.features = TAUT_FEATURE_TETHERS | TAUT_FEATURE_AIR | TAUT_FEATURE_COLLIDERS;
     def.max_pins = 2;
     def.v_axis[1] = 0.0f;
     def.v_axis[2] = 1.0f;

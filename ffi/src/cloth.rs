@@ -152,8 +152,8 @@ pub unsafe extern "C" fn taut_cloth_create(
     })
 }
 
-/// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
-/// Stiffness, masses and mask stay.
+/// Back to the start: flat, at rest, nothing pinned, no collider, step 0, gravity, damping, air, targets, frame and rest lengths
+/// as they were made. Stiffness, masses and mask stay.
 ///
 /// Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 /// Threads: changes the cloth.
