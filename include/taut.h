@@ -880,12 +880,13 @@ taut_result taut_cloth_create(const taut_grid *on,
                               size_t block_size,
                               taut_cloth **out);
 
-// Back to the start: flat, at rest, nothing pinned, step 0, gravity, damping, frame and rest lengths as they were made.
-// Stiffness, masses and mask stay.
+// Back to the start: flat, at rest, nothing pinned, no collider, step 0, gravity, damping, air, targets, frame and rest lengths
+// as they were made. Stiffness, masses and mask stay.
 //
 // Errors: TAUT_ERROR_NULL_POINTER, TAUT_ERROR_MISALIGNED, TAUT_ERROR_BAD_HANDLE.
 // Threads: changes the cloth.
-TAUT_API taut_result taut_cloth_reset(taut_cloth *cloth);
+TAUT_API
+taut_result taut_cloth_reset(taut_cloth *cloth);
 
 // Checks a baked field file of size bytes and tells what it is: so the density is known before the cloth is made.
 //
