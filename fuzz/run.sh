@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 seconds=${1:-30}
 shift || true
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(definitions field_file snapshot calls metadata)
+[ ${#targets[@]} -gt 0 ] || targets=(definitions field_file snapshot calls parts metadata)
 
 folder=${CARGO_TARGET_DIR:-$(cd .. && pwd)/target}/fuzz
 unset CARGO_ENCODED_RUSTFLAGS CARGO_BUILD_TARGET CARGO_TARGET_DIR

@@ -6,7 +6,7 @@ use std::ffi::c_void;
 #[path = "../../ffi/src/types.rs"]
 mod types;
 
-pub use types::{BudgetReport, ClothDef, GridDef, Memory, PositionView, Strain};
+pub use types::{Air, BudgetReport, ClothDef, ColliderDef, GridDef, Memory, Pose, PositionView, Strain};
 
 /// TAUT_OK.
 pub const OK: i32 = 0;
@@ -51,6 +51,56 @@ unsafe extern "C" {
     pub fn taut_cloth_snapshot(cloth: *mut c_void, out: *mut c_void, size: usize, written: *mut usize) -> i32;
     pub fn taut_cloth_restore(cloth: *mut c_void, data: *const c_void, size: usize) -> i32;
     pub fn taut_cloth_state_hash(cloth: *mut c_void, out: *mut u64) -> i32;
+    pub fn taut_cloth_set_mask(cloth: *mut c_void, count: u32, present: *const u8) -> i32;
+    pub fn taut_cloth_set_masses(cloth: *mut c_void, count: u32, mass_kg: *const f32) -> i32;
+    pub fn taut_cloth_set_gravity(cloth: *mut c_void, gravity_m_s2: *const f32) -> i32;
+    pub fn taut_cloth_set_damping(cloth: *mut c_void, damping_per_s: f32) -> i32;
+    pub fn taut_cloth_set_rest_scale(cloth: *mut c_void, warp: f32, weft: f32, diagonal: f32) -> i32;
+    pub fn taut_collider_def_default(shape: u32) -> ColliderDef;
+    pub fn taut_cloth_collider_add(cloth: *mut c_void, def: *const ColliderDef, out: *mut u32) -> i32;
+    pub fn taut_cloth_collider_move(cloth: *mut c_void, id: u32, pose: *const Pose) -> i32;
+    pub fn taut_cloth_collider_set_pose(cloth: *mut c_void, id: u32, pose: *const Pose) -> i32;
+    pub fn taut_cloth_collider_remove(cloth: *mut c_void, id: u32) -> i32;
+    pub fn taut_cloth_set_target_limits(
+        cloth: *mut c_void,
+        count: u32,
+        max_distance_m: *const f32,
+        backstop_radius_m: *const f32,
+        backstop_distance_m: *const f32,
+    ) -> i32;
+    pub fn taut_cloth_move_targets(
+        cloth: *mut c_void,
+        base_m: *const f64,
+        count: u32,
+        positions_m: *const c_void,
+        normals: *const c_void,
+        stride: usize,
+    ) -> i32;
+    pub fn taut_cloth_set_targets(
+        cloth: *mut c_void,
+        base_m: *const f64,
+        count: u32,
+        positions_m: *const c_void,
+        normals: *const c_void,
+        stride: usize,
+    ) -> i32;
+    pub fn taut_air_default() -> Air;
+    pub fn taut_cloth_set_air(cloth: *mut c_void, air: *const Air) -> i32;
+    pub fn taut_cloth_set_frame(cloth: *mut c_void, frame: *const Pose, linear: f32, angular: f32) -> i32;
+    pub fn taut_cloth_teleport(cloth: *mut c_void, frame: *const Pose) -> i32;
+    pub fn taut_cloth_width(cloth: *const c_void, out: *mut u32) -> i32;
+    pub fn taut_cloth_set_width(cloth: *mut c_void, number: u32) -> i32;
+    pub fn taut_cloth_bands_memory(cloth: *const c_void, rows_per_band: u32, out: *mut Memory) -> i32;
+    pub fn taut_cloth_bands_begin(
+        cloth: *mut c_void,
+        rows_per_band: u32,
+        block: *mut c_void,
+        size: usize,
+        out: *mut *mut c_void,
+    ) -> i32;
+    pub fn taut_bands_count(bands: *const c_void, count: *mut u32, phases: *mut u32) -> i32;
+    pub fn taut_bands_run(bands: *const c_void, phase: u32, band: u32) -> i32;
+    pub fn taut_bands_end(bands: *mut c_void, out_flags: *mut u32) -> i32;
 }
 
 /// A block of memory, aligned for everything.

@@ -29,6 +29,20 @@ impl Input<'_> {
         f32::from_bits(self.u32())
     }
 
+    /// Any bits, or mostly a number of the size of things in a scene: -32 to 32 in steps of a thousandth.
+    pub fn near(&mut self) -> f32 {
+        match self.u8() {
+            255 => self.f32(),
+            _ => f32::from(i16::from_le_bytes(self.take())) * 1e-3,
+        }
+    }
+
+    /// One of some values.
+    pub fn pick<T: Copy>(&mut self, of: &[T]) -> Option<T> {
+        let place = usize::from(self.u8());
+        of.get(place % of.len().max(1)).copied()
+    }
+
     pub fn f64(&mut self) -> f64 {
         f64::from_le_bytes(self.take())
     }
