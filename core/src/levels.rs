@@ -9,12 +9,13 @@
 use crate::force::Substep;
 use crate::layout::{Layout, copy, read, span, take, write};
 use crate::limit::{Reach, Sheet, Sweeps};
+use crate::mask::is_absent;
 use crate::math::round16;
 use crate::prolong::Prolong;
 use crate::simd::{Pass, Vector};
 use crate::strain_limit::TARGET;
 use crate::tethers::{Pull, Tethers};
-use crate::{Cloth, Error, simd};
+use crate::{Cloth, Error, node_mask, simd};
 
 /// Sweeps of a coarse level.
 const COARSE_SWEEPS: u32 = 4;
@@ -68,8 +69,7 @@ impl Level {
         let (mut count, mut former) = (0, Level::default());
         for (k, level) in levels.iter_mut().enumerate() {
             *level = Level::new(l, k as u32);
-            // a chord across a hole says nothing about the cloth around it
-            if *level == former || l.mask && k > 0 {
+            if *level == former {
                 break;
             }
             (count, former) = (count + 1, *level);
@@ -122,7 +122,7 @@ impl<'a> Levels<'a> {
     pub fn numbers(l: &Layout) -> usize {
         let (levels, count) = Level::all(l);
         let coarse = levels.iter().take(count).skip(1);
-        if l.levels { coarse.map(|level| Nodes::numbers(level.plane())).sum() } else { 0 }
+        if l.levels { coarse.map(|level| Nodes::numbers(level.plane(), l.mask)).sum() } else { 0 }
     }
 
     pub fn new(l: &Layout, block: &mut &'a mut [f32]) -> Result<Self, Error> {
@@ -138,28 +138,31 @@ struct Nodes<'n> {
     x: [&'n mut [f32]; 3],
     inverse: &'n mut [f32],
     tethers: Tethers<'n>,
+    /// 0 for the nodes that no cloth is swept by ([`node_mask`]); empty without masks.
+    mask: &'n mut [f32],
 }
 
 impl<'n> Nodes<'n> {
-    fn numbers(plane: usize) -> usize {
-        7 * plane + Tethers::numbers(plane)
+    fn numbers(plane: usize, mask: bool) -> usize {
+        7 * plane + Tethers::numbers(plane) + if mask { plane } else { 0 }
     }
 
     /// Takes the planes of a level off the memory of the levels.
-    fn take(rest: &mut &'n mut [f32], plane: usize) -> Result<Self, Error> {
+    fn take(rest: &mut &'n mut [f32], plane: usize, mask: bool) -> Result<Self, Error> {
         Ok(Nodes {
             from: [take(rest, plane)?, take(rest, plane)?, take(rest, plane)?],
             x: [take(rest, plane)?, take(rest, plane)?, take(rest, plane)?],
             inverse: take(rest, plane)?,
             tethers: Tethers::new(plane, rest)?,
+            mask: take(rest, if mask { plane } else { 0 })?,
         })
     }
 
     /// The nodes of all coarse levels; the first place, that of the cloth itself, stays empty.
-    fn all(numbers: &'n mut [f32], levels: &[Level]) -> [Option<Nodes<'n>>; MOST_LEVELS] {
+    fn all(numbers: &'n mut [f32], levels: &[Level], mask: bool) -> [Option<Nodes<'n>>; MOST_LEVELS] {
         let (mut nodes, mut rest) = ([const { None }; MOST_LEVELS], numbers);
         for (nodes, level) in nodes.iter_mut().zip(levels).skip(1) {
-            *nodes = Nodes::take(&mut rest, level.plane()).ok();
+            *nodes = Nodes::take(&mut rest, level.plane(), mask).ok();
         }
         nodes
     }
@@ -214,7 +217,7 @@ impl Pass for TakeOff<'_> {
 }
 
 impl Cloth<'_> {
-    /// Gives the nodes of the coarse levels the masses and tethers of their particles; called when the pins have changed.
+    /// Gives the nodes of the coarse levels the masses and tethers of their particles; called when pins or mask have changed.
     pub(crate) fn attach_nodes(&mut self) {
         let l = self.layout;
         if !l.levels {
@@ -222,7 +225,7 @@ impl Cloth<'_> {
         }
         let (levels, count) = Level::all(&l);
         let levels = levels.get(..count).unwrap_or(&[]);
-        for (nodes, level) in Nodes::all(self.levels.numbers, levels).into_iter().zip(levels) {
+        for (nodes, level) in Nodes::all(self.levels.numbers, levels, l.mask).into_iter().zip(levels) {
             let Some(mut nodes) = nodes else {
                 continue;
             };
@@ -230,8 +233,13 @@ impl Cloth<'_> {
             for length in &mut nodes.tethers.length {
                 length.fill(f32::INFINITY);
             }
+            node_mask::write_nodes(&l, level, self.mask, nodes.mask);
             for row in 0..rows {
                 for column in 0..columns {
+                    if is_absent(nodes.mask, row * level.stride() + column) {
+                        write(nodes.inverse, row * level.stride() + column, 0.0);
+                        continue;
+                    }
                     let at = l.at(level.particle(1, row), level.particle(0, column));
                     let node = row * level.stride() + column;
                     write(nodes.inverse, node, read(self.inverse, at));
@@ -256,7 +264,7 @@ impl Cloth<'_> {
         let (levels, count) = Level::all(&self.layout);
         let levels = levels.get(..count).unwrap_or(&[]);
         let numbers = core::mem::take(&mut self.levels.numbers);
-        let mut nodes = Nodes::all(numbers, levels);
+        let mut nodes = Nodes::all(numbers, levels, self.layout.mask);
         for i in 0..MOST_CYCLES {
             // what the first cycles cannot settle is aimed at from farther below
             let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
@@ -306,6 +314,7 @@ impl Cloth<'_> {
                     fine: *level,
                     coarse: *coarse,
                     ways: above.x.each_ref().map(|p| &**p),
+                    mask: above.mask,
                     x: nodes.x.each_mut().map(|p| &mut **p),
                     first: 0,
                     stride: level.stride(),
@@ -322,6 +331,7 @@ impl Cloth<'_> {
                 fine: *fine,
                 coarse: *coarse,
                 ways: nodes.x.each_ref().map(|p| &**p),
+                mask: nodes.mask,
                 x: [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z],
                 first: self.layout.row(0),
                 stride: self.layout.stride,
@@ -379,7 +389,7 @@ impl Cloth<'_> {
             first: 0,
             x: nodes.x.each_mut().map(|p| &mut **p),
             inverse: nodes.inverse,
-            mask: &[],
+            mask: nodes.mask,
             reach,
         };
         simd::run(self.width, Sweeps { sheet, sweeps: COARSE_SWEEPS });

@@ -54,6 +54,7 @@ mod mask;
 mod masses;
 mod math;
 mod mesh;
+mod node_mask;
 pub mod noise;
 mod normals;
 mod passes;
