@@ -31,6 +31,8 @@ enum Holes {
     None,
     Random,
     Disc,
+    /// A tear down to three quarters and one along a row, in two pieces.
+    Tears,
 }
 
 /// A crumpled sheet with random masses, pins and holes, limits that are reached in some places.
@@ -59,6 +61,7 @@ fn sheet(seed: u64, (rows, columns): (u32, u32), features: Features, pins: usize
             match holes {
                 Holes::None => 1,
                 Holes::Random => u8::from(r.below(6) != 0),
+                Holes::Tears => u8::from((u.floor() != 1.0 || v > 0.5 * middle_v) && v.floor() != -2.0),
                 Holes::Disc => u8::from((u / middle_u).powi(2) + (v / middle_v).powi(2) < 0.9),
             }
         })
@@ -90,7 +93,7 @@ fn every_width_limits_to_the_same_bits() {
     let both = Features(Features::TETHERS.0 | Features::STRAIN_LIMIT.0);
     let (mut seed, mut compared, mut at_work) = (0, 0, [0; 4]);
     for size in SIZES {
-        for holes in [Holes::None, Holes::Random, Holes::Disc] {
+        for holes in [Holes::None, Holes::Random, Holes::Disc, Holes::Tears] {
             for (kind, features) in
                 [Features::TETHERS, Features::STRAIN_LIMIT, both, Features::LEVELS].into_iter().enumerate()
             {
@@ -119,6 +122,6 @@ fn every_width_limits_to_the_same_bits() {
             }
         }
     }
-    assert_eq!(compared, SIZES.len() * 3 * 4 * widths.len() * 2);
-    assert!(at_work.iter().all(|n| *n > 30), "{at_work:?} of {} cloths were limited", SIZES.len() * 3);
+    assert_eq!(compared, SIZES.len() * 4 * 4 * widths.len() * 2);
+    assert!(at_work.iter().all(|n| *n > 30), "{at_work:?} of {} cloths were limited", SIZES.len() * 4);
 }
