@@ -38,7 +38,7 @@
 #include <stdint.h>
 
 // The version of this header as one number, for taut_check_version.
-#define TAUT_VERSION_ID \
+#define TAUT_VERSION_ID                                                                                      \
     (((uint32_t)TAUT_VERSION_MAJOR << 24) | ((uint32_t)TAUT_VERSION_MINOR << 16) | (uint32_t)TAUT_VERSION_PATCH)
 
 // TAUT_API is before every function. With the static library, and outside of Windows, there is nothing to set. A program for
@@ -87,7 +87,7 @@
      TAUT_IF_(features, TAUT_FEATURE_TETHERS | TAUT_FEATURE_LEVELS,                                          \
               TAUT_CLOTH_TETHERS_(TAUT_CLOTH_PLANE_(rows, columns))) +                                       \
      TAUT_IF_(features, TAUT_FEATURE_LEVELS,                                                                 \
-              TAUT_IF_(~(uint32_t)(features), TAUT_FEATURE_MASK, TAUT_CLOTH_LEVELS_(rows, columns))) +       \
+              TAUT_CLOTH_LEVELS_(rows, columns, 11 + TAUT_IF_(features, TAUT_FEATURE_MASK, 1))) +            \
      TAUT_IF_(features, TAUT_FEATURE_COLLIDERS, TAUT_MAX_COLLIDERS * 32) +                                   \
      TAUT_IF_(features, TAUT_FEATURE_IMPLICIT, 16 + TAUT_CLOTH_COARSE_(rows, columns)))
 #define TAUT_CLOTH_COARSE_(m, n)                                                                             \
@@ -100,13 +100,15 @@
          ? 13 * TAUT_ROUND_16_(((((size_t)(m) - 2) >> (i)) + 5) * ((((size_t)(n) - 2) >> (i)) + 5) + 2)      \
          : 0)
 #define TAUT_CLOTH_TETHERS_(plane) (2 * TAUT_ROUND_16_(((plane) + 15) / 16))
-#define TAUT_CLOTH_LEVELS_(m, n)                                                                             \
-    (TAUT_CLOTH_NODES_(m, n, 1) + TAUT_CLOTH_NODES_(m, n, 2) + TAUT_CLOTH_NODES_(m, n, 3) +                  \
-     TAUT_CLOTH_NODES_(m, n, 4) + TAUT_CLOTH_NODES_(m, n, 5) + TAUT_CLOTH_NODES_(m, n, 6) +                  \
-     TAUT_CLOTH_NODES_(m, n, 7) + TAUT_CLOTH_NODES_(m, n, 8) + TAUT_CLOTH_NODES_(m, n, 9))
-#define TAUT_CLOTH_NODES_(m, n, k)                                                                           \
+#define TAUT_CLOTH_LEVELS_(m, n, planes)                                                                     \
+    (TAUT_CLOTH_NODES_(m, n, 1, planes) + TAUT_CLOTH_NODES_(m, n, 2, planes) +                               \
+     TAUT_CLOTH_NODES_(m, n, 3, planes) + TAUT_CLOTH_NODES_(m, n, 4, planes) +                               \
+     TAUT_CLOTH_NODES_(m, n, 5, planes) + TAUT_CLOTH_NODES_(m, n, 6, planes) +                               \
+     TAUT_CLOTH_NODES_(m, n, 7, planes) + TAUT_CLOTH_NODES_(m, n, 8, planes) +                               \
+     TAUT_CLOTH_NODES_(m, n, 9, planes))
+#define TAUT_CLOTH_NODES_(m, n, k, planes)                                                                   \
     ((TAUT_CLOTH_HALVINGS_(m) >= (k) || TAUT_CLOTH_HALVINGS_(n) >= (k))                                      \
-         ? 11 * TAUT_CLOTH_NODE_PLANE_(m, n, k) + TAUT_CLOTH_TETHERS_(TAUT_CLOTH_NODE_PLANE_(m, n, k))       \
+         ? (planes) * TAUT_CLOTH_NODE_PLANE_(m, n, k) + TAUT_CLOTH_TETHERS_(TAUT_CLOTH_NODE_PLANE_(m, n, k)) \
          : 0)
 #define TAUT_CLOTH_NODE_PLANE_(m, n, k)                                                                      \
     (TAUT_ROUND_16_(TAUT_CLOTH_NODE_COUNT_(n, k)) * TAUT_CLOTH_NODE_COUNT_(m, k) + 32)
