@@ -38,7 +38,7 @@
 #include <stdint.h>
 
 // The version of this header as one number, for taut_check_version.
-#define TAUT_VERSION_ID                                                                                      \
+#define TAUT_VERSION_ID \
     (((uint32_t)TAUT_VERSION_MAJOR << 24) | ((uint32_t)TAUT_VERSION_MINOR << 16) | (uint32_t)TAUT_VERSION_PATCH)
 
 // TAUT_API is before every function. With the static library, and outside of Windows, there is nothing to set. A program for
