@@ -117,18 +117,16 @@ fn largest(mut c: Cloth<'static>, jump_m: f64) -> f32 {
 fn never_more_than_eps_with_a_mask() {
     let mut beyond = 0;
     for (i, cut) in CUTS.into_iter().enumerate() {
-        for (substeps, eps) in [(16, 0.10), (32, 0.05)] {
-            for n in [32, 33] {
-                let k = [DENIM, AS_STIFF_AS_CAN_BE, KNIT][(i + n) % 3];
-                let def = ClothDef { substeps, features: WITH_MASK, strain_limit: [eps; 3], ..ClothDef::default() };
-                let jump_m = if cut == Cut::DiscOnThree { 0.0 } else { 1.0 };
-                let most = largest(cut.sheet(n, &def, k), jump_m);
-                println!("{cut:?} {n} x {substeps}: {most}");
-                assert!(most <= eps * 1.001, "{cut:?}, {n} x {n}, {substeps} substeps: {most}");
-                if (substeps, n) == (16, 33) {
-                    let plain = ClothDef { features: Features::MASK, ..def };
-                    beyond += u32::from(largest(cut.sheet(n, &plain, k), jump_m) > eps);
-                }
+        for (substeps, eps, n) in [(16, 0.10, 33), (32, 0.05, 32)] {
+            let k = [DENIM, AS_STIFF_AS_CAN_BE, KNIT][(i + n) % 3];
+            let def = ClothDef { substeps, features: WITH_MASK, strain_limit: [eps; 3], ..ClothDef::default() };
+            let jump_m = if cut == Cut::DiscOnThree { 0.0 } else { 1.0 };
+            let most = largest(cut.sheet(n, &def, k), jump_m);
+            println!("{cut:?}, {n} x {n}, 60 x {substeps}: {:.2} %", 100.0 * most);
+            assert!(most <= eps * 1.001, "{cut:?}, {n} x {n}, {substeps} substeps: {most}");
+            if substeps == 16 {
+                let plain = ClothDef { features: Features::MASK, ..def };
+                beyond += u32::from(largest(cut.sheet(n, &plain, k), jump_m) > eps);
             }
         }
     }

@@ -9,13 +9,26 @@ use taut::{Cloth, ClothDef, Features, Grid, GridDef, StepFlags, Vector3};
 
 const SIDE: usize = 32;
 const SECONDS: u32 = 8;
-const SCENES: [&str; 7] = ["hang2", "edge", "swing", "curtain", "shake", "teleport", "hang1"];
+const SCENES: [&str; 10] = ["hang2", "edge", "swing", "curtain", "shake", "teleport", "hang1", "disc", "hole", "tear"];
+
+/// What is left of the sheet in the scenes with a mask, which fall from level as hang2 does.
+fn mask(scene: &str) -> Option<Vec<u8>> {
+    let leaves: fn(f32, f32) -> bool = match scene {
+        "disc" => |row, column| row.hypot(column) <= 15.5,
+        "hole" => |row, column| row.hypot(column) > 6.0,
+        "tear" => |row, column| row != 1.5 || column < -11.0,
+        _ => return None,
+    };
+    Some((0..SIDE * SIDE).map(|i| u8::from(leaves((i / SIDE) as f32 - 15.5, (i % SIDE) as f32 - 15.5))).collect())
+}
 
 fn pins(scene: &str) -> Vec<usize> {
     match scene {
         "edge" | "swing" => (0..SIDE).collect(),
         "curtain" => (0..SIDE).step_by(4).chain([SIDE - 1]).collect(),
         "hang1" => vec![0],
+        // on its rim, a quarter of a turn apart
+        "disc" => vec![5 * SIDE + 5, 5 * SIDE + 26],
         _ => vec![0, SIDE - 1],
     }
 }
@@ -32,14 +45,19 @@ fn moved(scene: &str, time: f64) -> Vector3<f64> {
 
 /// Prints one line.
 fn measure(scene: &str, def: &ClothDef, k: [f32; 4]) -> Result<(), taut::Error> {
-    let level = matches!(scene, "hang2" | "swing");
+    let mask = mask(scene);
+    let level = mask.is_some() || matches!(scene, "hang2" | "swing");
+    let features = Features(def.features.0 | if mask.is_some() { Features::MASK.0 } else { 0 });
     let v_axis = if level { [0.0, 0.0, 1.0] } else { [0.0, -1.0, 0.0] };
     let damping_per_s = if scene == "swing" { 0.0 } else { 2.0 };
-    let def = ClothDef { v_axis, damping_per_s, ..*def };
+    let def = ClothDef { v_axis, damping_per_s, features, ..*def };
     let grid = Grid::new(&GridDef { rows: SIDE as u32, columns: SIDE as u32, ..GridDef::default() })?;
     let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
     let mut cloth = Cloth::create(&grid, &def, &mut block)?;
     cloth.set_stiffness_uniform(k)?;
+    if let Some(mask) = mask {
+        cloth.set_mask(&mask)?;
+    }
     if !level {
         for i in 0..SIDE * SIDE {
             let (u, v) = ((i % SIDE) as f32 / 31.0, (i / SIDE) as f32 / 31.0);
