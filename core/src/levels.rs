@@ -138,7 +138,7 @@ struct Nodes<'n> {
     x: [&'n mut [f32]; 3],
     inverse: &'n mut [f32],
     tethers: Tethers<'n>,
-    /// 0 for the nodes that no cloth is swept by ([`node_mask`]); empty without masks.
+    /// 1 for the nodes that take part, 0 for the others ([`node_mask`]); empty without masks.
     mask: &'n mut [f32],
 }
 
@@ -236,12 +236,12 @@ impl Cloth<'_> {
             node_mask::write_nodes(&l, level, self.mask, nodes.mask);
             for row in 0..rows {
                 for column in 0..columns {
-                    if is_absent(nodes.mask, row * level.stride() + column) {
-                        write(nodes.inverse, row * level.stride() + column, 0.0);
-                        continue;
-                    }
                     let at = l.at(level.particle(1, row), level.particle(0, column));
                     let node = row * level.stride() + column;
+                    if is_absent(nodes.mask, node) {
+                        write(nodes.inverse, node, 0.0);
+                        continue;
+                    }
                     write(nodes.inverse, node, read(self.inverse, at));
                     let pins = nodes.tethers.pin.iter_mut().zip(&self.tethers.pin);
                     let lengths = nodes.tethers.length.iter_mut().zip(&self.tethers.length);
