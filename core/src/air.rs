@@ -307,10 +307,11 @@ impl Pass for Blow<'_> {
         // a row has one cell less than particles
         let cells = self.layout.columns.saturating_sub(1);
         let [from, to] = self.rows;
+        let begin = self.layout.row(from);
         for row in from.max(1)..(to + 1).min(self.layout.rows) {
             let mut first = 0;
             while first < cells {
-                self.block(zero, self.layout.at(row - 1, first), cells - first);
+                self.block(zero, self.layout.at(row - 1, first), begin, cells - first);
                 first += LANES;
             }
         }
@@ -319,9 +320,9 @@ impl Pass for Blow<'_> {
 
 impl Blow<'_> {
     /// The forces of the cells of a block, of which there are `cells`, from the one whose upper left corner is at a place: a
-    /// quarter to each corner.
+    /// quarter to each corner. `begin` is the place of the first force.
     #[inline(always)]
-    fn block<V: Vector>(&mut self, zero: V, at: usize, cells: usize) {
+    fn block<V: Vector>(&mut self, zero: V, at: usize, begin: usize, cells: usize) {
         let stride = self.layout.stride;
         let below = at.wrapping_add(stride);
         let (x, v) = (Corners::new(self.x, at, stride), Corners::new(self.v, at, stride));
@@ -356,20 +357,18 @@ impl Blow<'_> {
             let force = force.times(quarter);
             // of the cell on the left of a particle and that on its right
             let sum = force.next1(before).plus(force);
-            self.add(zero, sum, at.wrapping_add(lane));
+            self.add(zero, sum, at.wrapping_add(lane).wrapping_sub(begin));
             before = force;
             lane += V::LANES;
         }
         // of the last cell to the particle behind it
-        self.add(zero, Three([zero; 3]).next1(before), at.wrapping_add(LANES));
+        self.add(zero, Three([zero; 3]).next1(before), at.wrapping_add(LANES).wrapping_sub(begin));
     }
 
-    /// Adds forces to the particles from a place on and to those below, as far as they are in the rows: a place before them
-    /// wraps, and nothing is beyond the planes.
+    /// Adds forces to the particles from a place of the rows on and to those below, as far as they are in the rows: a place
+    /// before them wraps, and nothing is beyond the planes.
     #[inline(always)]
     fn add<V: Vector>(&mut self, zero: V, force: Three<V>, at: usize) {
-        let [from, _] = self.rows;
-        let at = at.wrapping_sub(self.layout.row(from));
         for at in [at, at.wrapping_add(self.layout.stride)] {
             let [x, y, z] = &mut self.force;
             Three::read(zero, [x, y, z], at).plus(force).write([x, y, z], at);

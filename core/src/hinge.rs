@@ -207,6 +207,7 @@ impl Pass for Bend<'_> {
         let columns = [0, LANES, last.saturating_sub(LANES), last].map(|first| Columns::new(l, first, &k));
         let [first, between, last_but_one, last] = &columns;
         let [from, to] = self.rows;
+        let begin = l.row(from);
         for row in from..to {
             let rows = Rows::new(l, row, &k);
             for block in 0..blocks {
@@ -216,18 +217,17 @@ impl Pass for Bend<'_> {
                     2 => last_but_one,
                     _ => between,
                 };
-                self.block(zero, l.at(row, block * LANES), &rows, columns);
+                self.block(zero, l.at(row, block * LANES), begin, &rows, columns);
             }
         }
     }
 }
 
 impl Bend<'_> {
-    /// The particles of a block.
+    /// The particles of a block; `begin` is the place of the first force.
     #[inline(always)]
-    fn block<V: Vector>(&mut self, zero: V, at: usize, rows: &Rows, columns: &Columns) {
+    fn block<V: Vector>(&mut self, zero: V, at: usize, begin: usize, rows: &Rows, columns: &Columns) {
         let stride = self.layout.stride;
-        let begin = self.layout.row(self.rows[0]);
         let mask = Around::new(self.mask, at, stride);
         let mut lane = 0;
         while lane < LANES {
