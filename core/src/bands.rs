@@ -2,9 +2,9 @@
 //! number of bands and threads. The core itself starts no threads.
 //!
 //! A substep has two phases, or three with tethers: what crosses the borders between the bands, and the forces of air, hinges
-//! and weights; the rows themselves with their pins; the tethers. Targets and colliders come last. In each of them a band writes only what is its own, and reads beyond it only what nobody writes
-//! in that phase ([`rows`]). So nothing depends on who comes first, as long as no band begins a phase before all bands have
-//! ended the one before. That is kept by a counter for each band: [`Bands::run`] looks at all of them before it begins, and
+//! and weights; the rows themselves with their pins; the tethers. Targets and colliders end the last of them. In each phase a
+//! band writes only what is its own, and reads beyond it only what nobody writes in that phase ([`rows`]). So nothing depends
+//! on who comes first, as long as no band begins a phase before all bands have ended the one before. That is kept by a counter for each band: [`Bands::run`] looks at all of them before it begins, and
 //! refuses what comes too early. So a wrong order is an error, never a race, and a job system needs no locks but its own.
 //!
 //! Why this is sound: [`Cloth::bands`] borrows the cloth for as long as the bands live and takes the pointers to its planes

@@ -118,6 +118,11 @@ impl Grid {
         self.def.height_m / (self.def.rows - 1) as f32
     }
 
+    /// The smaller one of [`Grid::rest_u`] and [`Grid::rest_v`] in m.
+    pub(crate) fn least_rest(&self) -> f32 {
+        math::min(self.rest_u(), self.rest_v())
+    }
+
     /// Rest length of the diagonal springs in m.
     pub fn rest_diagonal(&self) -> f32 {
         let (u, v) = (self.rest_u(), self.rest_v());

@@ -151,7 +151,7 @@ impl Cloth<'_> {
                 colliders: self.colliders.numbers,
                 rate_hz: self.def.rate_hz,
                 substeps: self.def.substeps,
-                spacing: crate::math::min(self.grid.rest_u(), self.grid.rest_v()),
+                spacing: self.grid.least_rest(),
             };
             let held = Held {
                 rows: [0, l.rows],

@@ -1,6 +1,5 @@
 use crate::force::{Finite, Substep, Sweep};
 use crate::layout::copy;
-use crate::math::min;
 use crate::{Cloth, Error, Solver, in_default_environment, simd};
 
 /// What happened in a step, as bits.
@@ -130,7 +129,7 @@ impl Cloth<'_> {
             rest_v: g.rest_v() * scale_v,
             rest_diagonal: g.rest_diagonal() * scale_diagonal,
             floor: if d.compression_limit { -1.0 } else { f32::NEG_INFINITY },
-            speed: if d.speed_limit > 0.0 { d.speed_limit * min(g.rest_u(), g.rest_v()) / dt } else { f32::INFINITY },
+            speed: if d.speed_limit > 0.0 { d.speed_limit * g.least_rest() / dt } else { f32::INFINITY },
         }
     }
 

@@ -101,7 +101,7 @@ impl Cloth<'_> {
     /// Whether the levels keep the limit that was asked for.
     fn keeps_limit(&self) -> bool {
         let [warp, weft, _] = self.def.strain_limit;
-        let cell = min(self.grid.rest_u(), self.grid.rest_v());
+        let cell = self.grid.least_rest();
         // a rounding of the product must not decide
         let enough = min(warp, weft) * cell >= 0.999 * LIMIT_SPEED_M_S * self.def.dt_s();
         self.layout.levels && !self.layout.mask && enough
@@ -206,7 +206,7 @@ impl Cloth<'_> {
         }
         let s = mass as f32 * norm(self.ambient.gravity()) / softest;
         let d = self.grid.def();
-        let cells = (d.width_m + d.height_m) / min(self.grid.rest_u(), self.grid.rest_v());
+        let cells = (d.width_m + d.height_m) / self.grid.least_rest();
         let bound = s + sqrt(s * s + s * cells * (4.0 + s));
         if bound.is_finite() { bound } else { f32::INFINITY }
     }

@@ -21,9 +21,8 @@ fuzz_target!(|data: &[u8]| {
         (grid_def.rows, grid_def.columns) = (2 + u32::from(input.u8() % 5), 2 + u32::from(input.u8() % 18));
         grid_def.families = 1 | u32::from(input.u8()) & 6;
         let particles = (grid_def.rows * grid_def.columns) as usize;
-        let mut grid_block = Block::new(64);
-        let mut grid = null_mut();
-        assert_eq!(capi::taut_grid_create(&grid_def, grid_block.at(), 64, &mut grid), OK);
+        let (_grid_block, grid) = capi::grid(&grid_def);
+        assert!(!grid.is_null());
         let mut def = capi::taut_cloth_def_default(grid);
         let options = input.u8();
         def.features = u32::from(options & 1);

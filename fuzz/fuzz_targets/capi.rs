@@ -122,6 +122,17 @@ impl Block {
     }
 }
 
+/// A grid in a block of its own; null where it is refused.
+///
+/// # Safety
+/// The grid is used only as long as the block is kept.
+pub unsafe fn grid(def: &GridDef) -> (Block, *mut c_void) {
+    let (mut block, mut grid) = (Block::new(64), std::ptr::null_mut());
+    // SAFETY: a definition, and a block of the size that it is said to have.
+    unsafe { taut_grid_create(def, block.at(), 64, &mut grid) };
+    (block, grid)
+}
+
 /// Whether every position is finite.
 ///
 /// # Safety

@@ -6,7 +6,6 @@ use core::slice::{from_raw_parts, from_raw_parts_mut};
 use super::Plan;
 use crate::force::View;
 use crate::layout::Layout;
-use crate::math::min;
 use crate::passes::{Held, Holders, Loads, Outer};
 use crate::tethers::{self, Pull, TETHERS, Tethers};
 use crate::{Cloth, simd};
@@ -64,7 +63,7 @@ impl Parts {
             masses: Lent::new(cloth.masses),
             targets: Lent::new(cloth.targets.planes),
             colliders: Lent::new(cloth.colliders.numbers),
-            spacing: min(cloth.grid.rest_u(), cloth.grid.rest_v()),
+            spacing: cloth.grid.least_rest(),
             force: cloth.force.each_mut().map(|plane| plane.as_mut_ptr()),
             tethers,
         }

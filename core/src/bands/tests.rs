@@ -11,6 +11,9 @@ use crate::{
     Target, TargetLimit, Vector3, Width, noise,
 };
 
+/// All that bands can step, and the memory of what they cannot.
+const EVERY_FEATURE: Features = Features(!REFUSED & ((1 << 11) - 1));
+
 /// A sheet in motion with a stiffness of its own at every particle, an inertia field and two pins of which one moves.
 fn sheet<'a>(rows: u32, columns: u32, families: Families, features: Features, block: &'a mut Vec<f32>) -> Cloth<'a> {
     let grid = Grid::new(&GridDef { rows, columns, families, ..GridDef::default() }).unwrap();
@@ -105,7 +108,6 @@ fn bands_have_the_bits_of_the_step() {
     let no_bend = Families(Families::STRUCTURAL.0 | Families::SHEAR.0);
     let no_shear = Families(Families::STRUCTURAL.0 | Families::BEND.0);
     let masked_tethers = Features(Features::MASK.0 | Features::TETHERS.0);
-    let every_feature = Features(!REFUSED & ((1 << 11) - 1));
     for (rows, columns, per_band) in [(40, 33, 8), (31, 17, 8), (97, 5, 16), (24, 64, 11), (9, 9, 8)] {
         for families in [all, no_bend, no_shear, Families::STRUCTURAL] {
             let mut without = Vec::new();
@@ -120,7 +122,7 @@ fn bands_have_the_bits_of_the_step() {
                 Features::MASS,
                 Features::TARGETS,
                 Features::COLLIDERS,
-                every_feature,
+                EVERY_FEATURE,
             ] {
                 for width in Width::ALL.into_iter().filter(|w| w.is_supported()) {
                     let (mut one, mut other) = (Vec::new(), Vec::new());
@@ -154,7 +156,7 @@ fn bands_have_the_bits_of_the_step() {
 #[test]
 fn bands_of_any_number_of_threads_have_the_same_bits() {
     let mut block = Vec::new();
-    let features = Features(!REFUSED & ((1 << 11) - 1));
+    let features = EVERY_FEATURE;
     let mut plain = sheet(64, 48, Families::ALL, features, &mut block);
     for i in 1..=10 {
         drive(&mut plain, i);

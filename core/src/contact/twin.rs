@@ -393,8 +393,7 @@ fn vectors_push_out_as_particles_on_their_own() {
     cloth.pin(40).unwrap();
     cloth.refresh(true);
     let (l, c) = (cloth.layout, cloth.constants());
-    let rules =
-        Rules { dt: c.dt, per_s: 1.0 / c.dt, recovery: RECOVERY * min(cloth.grid.rest_u(), cloth.grid.rest_v()) };
+    let rules = Rules { dt: c.dt, per_s: 1.0 / c.dt, recovery: RECOVERY * cloth.grid.least_rest() };
     let all = (0..MAX_COLLIDERS).filter_map(|place| cloth.colliders.get(place));
     let colliders: Vec<Moving> = all.map(|c| Moving::new(&c, 0.25, 0.5, 60.0)).collect();
     let (mut moved, mut compared) = (0, 0);
