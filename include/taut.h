@@ -612,6 +612,9 @@ typedef struct {
     float strain_limit[3];
     // Passes of the strain limit in each substep, 1 to 64. Default 2.
     uint32_t strain_passes;
+    // Cycles through the levels in each substep, 1 to 32: their price is then fixed, and strain_limit is what they aim at. 0: as many as
+    // it takes that no structural spring is beyond strain_limit, at most 32. Default 0.
+    uint32_t level_cycles;
     // Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
     float hinge_rigidity_n_m;
     // A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
@@ -625,8 +628,6 @@ typedef struct {
     float u_axis[3];
     // Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     float v_axis[3];
-    // 0.
-    uint32_t reserved;
 } taut_cloth_def;
 
 // What a baked field tells about its fabric beside the stiffness.

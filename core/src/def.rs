@@ -103,6 +103,9 @@ pub struct ClothDef {
     pub strain_limit: [f32; 3],
     /// Passes of the strain limit in each substep, 1 to 64. Default 2.
     pub strain_passes: u32,
+    /// Cycles through the levels in each substep, 1 to 32: what they cost is fixed, and `strain_limit` is what they aim at. 0: as
+    /// many as it takes that no structural spring is beyond `strain_limit`, at most 32. Default 0.
+    pub level_cycles: u32,
     /// Bending rigidity D of the hinges in N m, 0 to 1e6; see [`crate::BudgetReport::hinge_fraction`]. Default 1e-5.
     pub hinge_rigidity_n_m: f32,
     /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to 1e3;
@@ -137,6 +140,7 @@ impl Default for ClothDef {
             tether_slack: [0.0; 3],
             strain_limit: [0.05; 3],
             strain_passes: 2,
+            level_cycles: 0,
             hinge_rigidity_n_m: 1e-5,
             sleep_speed_m_s: 0.0,
             features: Features::NONE,
@@ -208,6 +212,7 @@ impl ClothDef {
             || limits.as_flattened().iter().any(|x| *x > 10.0)
             || !(1..=1000).contains(&self.cg_iterations)
             || !(1..=64).contains(&self.strain_passes)
+            || self.level_cycles > 32
             || self.hinge_rigidity_n_m > 1e6
             || self.sleep_speed_m_s > 1e3
             || !axis(&self.u_axis)
@@ -226,7 +231,7 @@ impl ClothDef {
         h.words(&self.gravity_m_s2.map(f));
         h.words(&[self.compression_limit as u32, self.budget as u32, f(self.inertia_radius_m), f(self.inertia_max)]);
         h.words(&[self.features.0, self.max_pins]);
-        h.words(&[self.solver as u32, self.cg_iterations, self.strain_passes]);
+        h.words(&[self.solver as u32, self.cg_iterations, self.strain_passes, self.level_cycles]);
         h.words(&[f(self.hinge_rigidity_n_m), f(self.sleep_speed_m_s)]);
         h.words(&self.tether_slack.map(f));
         h.words(&self.strain_limit.map(f));
@@ -257,6 +262,8 @@ mod tests {
         assert_eq!(err(ClothDef { u_axis: [0.0; 3], ..d }), Error::OutOfRange);
         assert_eq!(err(ClothDef { origin_m: [f64::NAN, 0.0, 0.0], ..d }), Error::NotFinite);
         assert_eq!(err(ClothDef { features: Features(2048), ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { strain_passes: 65, ..d }), Error::OutOfRange);
+        assert_eq!(err(ClothDef { level_cycles: 33, ..d }), Error::OutOfRange);
         assert_eq!(err(ClothDef { solver: Solver::Bdf2, ..d }), Error::FeatureOff);
     }
 }

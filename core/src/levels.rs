@@ -17,8 +17,9 @@ use crate::strain_limit::TARGET;
 use crate::tethers::{Pull, Tethers};
 use crate::{Cloth, Error, node_mask, simd};
 
-/// Sweeps of a coarse level.
+/// Sweeps of a coarse level: where cycles are repeated until the limit is kept, and where their number is given.
 const COARSE_SWEEPS: u32 = 4;
+const COARSE_SWEEPS_GIVEN: u32 = 3;
 
 /// Most cycles of a substep. More than a few are needed only where pins move by several cells in a substep.
 const MOST_CYCLES: u32 = 32;
@@ -254,7 +255,8 @@ impl Cloth<'_> {
         }
     }
 
-    /// Cycles from coarse to fine until no structural link is longer than its limit, at most [`MOST_CYCLES`].
+    /// Cycles from coarse to fine: as many as the definition gives, or until no structural link is longer than its limit, at
+    /// most [`MOST_CYCLES`].
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
         // only where a cycle would move nothing it is left out: a threshold above that would kick
         if self.is_within(c, TARGET) && self.tethers_are_slack() {
@@ -265,7 +267,11 @@ impl Cloth<'_> {
         let levels = levels.get(..count).unwrap_or(&[]);
         let numbers = core::mem::take(&mut self.levels.numbers);
         let mut nodes = Nodes::all(numbers, levels, self.layout.mask);
-        for i in 0..MOST_CYCLES {
+        for _ in 0..self.def.level_cycles {
+            self.cycle(c, TARGET, levels, &mut nodes);
+        }
+        let most = if self.def.level_cycles == 0 { MOST_CYCLES } else { 0 };
+        for i in 0..most {
             // what the first cycles cannot settle is aimed at from farther below
             let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
             self.cycle(c, target, levels, &mut nodes);
@@ -392,7 +398,8 @@ impl Cloth<'_> {
             mask: nodes.mask,
             reach,
         };
-        simd::run(self.width, Sweeps { sheet, sweeps: COARSE_SWEEPS });
+        let sweeps = if self.def.level_cycles == 0 { COARSE_SWEEPS } else { COARSE_SWEEPS_GIVEN };
+        simd::run(self.width, Sweeps { sheet, sweeps });
         let from = nodes.x.each_mut().map(|p| &mut **p);
         simd::run(self.width, TakeOff { from, other: nodes.from.each_ref().map(|p| &**p) });
     }

@@ -3,11 +3,11 @@
 //!
 //! The order is fixed and red-black, so that the links of one vector share no particle and nothing depends on how the work
 //! is split: rows (even links along u, then odd ones) and the pairs of an even row and the next one (along v, the diagonals
-//! to the lower right, to the lower left), then the pairs of an odd row and the next. A pair is swept as soon as all that
-//! comes before it is done, so that a sweep goes through memory once. Every second sweep runs all of that backwards, so that
-//! no family always has the last word.
+//! to the lower right, to the lower left), then the pairs of an odd row and the next. A few rows are swept as soon as all that
+//! comes before them is done, so that a sweep goes through memory once. Every second sweep runs all of that backwards, so
+//! that no family always has the last word.
 //!
-//! A vector without a link that is too long is left after the test of its lengths. In the others the links that are short
+//! A narrow vector without a link that is too long is left after the test of its lengths. In the others the links that are short
 //! enough keep the bits of their ends: they are chosen, not added to. So all widths have the same bits.
 #![allow(unsafe_code)] // pointers into planes whose lengths are checked once: see `Sheet::pointers`
 
@@ -143,6 +143,53 @@ impl Pass for Sweeps<'_> {
     }
 }
 
+/// Numbers of a plane in the rows that are worked on at once. What a step of the order below moves is not used before all
+/// of them are through it: a processor that reads across what it has just written waits.
+const NUMBERS_AT_ONCE: usize = 256;
+
+/// From so many lanes on a vector without a link that is too long is rare, and the guess whether it is one costs more than the
+/// square roots that are left out.
+const ALWAYS: usize = 16;
+
+/// Links that share no particle.
+enum Links {
+    /// Along u, from even columns on (0) or odd ones (1).
+    Along(usize),
+    /// Between the rows of pairs, the second of which are odd (1) or even (0), and the family: along v, the diagonals to the
+    /// lower right, to the lower left.
+    Across(usize, usize),
+}
+
+/// The order of a sweep.
+const FORWARD: [Links; 8] = [
+    Links::Along(0),
+    Links::Along(1),
+    Links::Across(1, 0),
+    Links::Across(1, 1),
+    Links::Across(1, 2),
+    Links::Across(0, 0),
+    Links::Across(0, 1),
+    Links::Across(0, 2),
+];
+/// The order of every second sweep.
+const BACKWARD: [Links; 8] = [
+    Links::Across(0, 2),
+    Links::Across(0, 1),
+    Links::Across(0, 0),
+    Links::Across(1, 2),
+    Links::Across(1, 1),
+    Links::Across(1, 0),
+    Links::Along(0),
+    Links::Along(1),
+];
+
+/// The links between rows: along v and along the diagonals; those that reach the last row may be shorter.
+struct Across {
+    usual: (f32, Family),
+    last: (f32, Family),
+    last_row: usize,
+}
+
 /// What is the same in a whole sweep.
 struct Constants<V> {
     zero: V,
@@ -160,41 +207,38 @@ impl Sweeps<'_> {
         let s = &self.sheet;
         let c = Constants { zero, tiny: zero.all(TINY), columns: s.columns, stride: s.stride };
         let along = s.reach.along(s.columns);
-        let across = [s.reach.across(s.columns, false), s.reach.across(s.columns, true)];
-        let pair = |row: usize| if row + 2 == s.rows { &across[1] } else { &across[0] };
+        let links_across = Across {
+            usual: s.reach.across(s.columns, false),
+            last: s.reach.across(s.columns, true),
+            last_row: s.rows.saturating_sub(1),
+        };
         let mut any = false;
+        let rows_at_once = (NUMBERS_AT_ONCE / s.stride.max(1)).max(1) * 2;
+        let blocks = s.rows.div_ceil(rows_at_once);
         // SAFETY: `pointers` has checked the lengths. The links of a row begin at columns below `columns` rounded up to
         // whole vectors, which is at most the stride, and reach one place farther in the same row or the next; nothing is
         // begun in the last row but links along u.
         unsafe {
             for sweep in 0..self.sweeps {
+                let order = if sweep % 2 == 0 { &FORWARD } else { &BACKWARD };
                 let mut moved = false;
-                if sweep % 2 == 0 {
-                    let mut row = 0;
-                    while row < s.rows {
-                        moved |= along_u::<V, MASK>(&c, &p, &along, row);
-                        if row + 1 < s.rows {
-                            moved |= along_u::<V, MASK>(&c, &p, &along, row + 1);
-                            moved |= across_pair::<V, MASK, false>(&c, &p, pair(row), row);
-                        }
-                        if row > 0 {
-                            moved |= across_pair::<V, MASK, false>(&c, &p, pair(row - 1), row - 1);
-                        }
-                        row += 2;
-                    }
-                } else {
-                    let mut rows_left = s.rows.div_ceil(2);
-                    while rows_left > 0 {
-                        rows_left -= 1;
-                        let row = 2 * rows_left;
-                        if row > 0 {
-                            moved |= across_pair::<V, MASK, true>(&c, &p, pair(row - 1), row - 1);
-                        }
-                        if row + 1 < s.rows {
-                            moved |= across_pair::<V, MASK, true>(&c, &p, pair(row), row);
-                            moved |= along_u::<V, MASK>(&c, &p, &along, row + 1);
-                        }
-                        moved |= along_u::<V, MASK>(&c, &p, &along, row);
+                for block in 0..blocks {
+                    let block = if sweep % 2 == 0 { block } else { blocks - 1 - block };
+                    let first = block * rows_at_once;
+                    let end = (first + rows_at_once).min(s.rows);
+                    for links in order {
+                        moved |= match links {
+                            Links::Along(parity) => {
+                                let mut moved = false;
+                                for row in first..end {
+                                    moved |= along_u::<V, MASK>(&c, &p, &along, row, *parity);
+                                }
+                                moved
+                            }
+                            Links::Across(lower, 0) => across::<V, MASK, 0>(&c, &p, &links_across, first + lower, end),
+                            Links::Across(lower, 1) => across::<V, MASK, 1>(&c, &p, &links_across, first + lower, end),
+                            Links::Across(lower, _) => across::<V, MASK, 2>(&c, &p, &links_across, first + lower, end),
+                        };
                     }
                 }
                 if !moved {
@@ -248,103 +292,124 @@ unsafe fn draw_back<V: Vector>(c: &Constants<V>, p: &Pointers, at: [usize; 2], l
         let (here, there) = (Three::load(c.zero, &p.x, at[0]), Three::load(c.zero, &p.x, at[1]));
         let d = there.minus(here);
         let d2 = d.squared();
-        if !d2.any_above(square) {
+        let moved = d2.any_above(square);
+        if V::LANES < ALWAYS && !moved {
             return false;
         }
         let (w, w_there) = (load(c.zero, p.inverse, at[0]), load(c.zero, p.inverse, at[1]));
         let e = drawn(c, d, d2, limit, w + w_there);
-        let minus = Three([c.zero; 3]).minus(e);
         Three::choose(d2, square, here.plus(e.times(w)), here).store(&p.x, at[0]);
-        Three::choose(d2, square, there.plus(minus.times(w_there)), there).store(&p.x, at[1]);
-        true
+        Three::choose(d2, square, there.minus(e.times(w_there)), there).store(&p.x, at[1]);
+        moved
     }
 }
 
-/// The links between a row and the next one; `BACK`: in the opposite order.
+/// The links of a family between every second row from `lower` to `end` and the row before it.
+///
+/// # Safety
+/// The rows before `end` are in the sheet.
+#[inline(always)]
+unsafe fn across<V: Vector, const MASK: bool, const FAMILY: usize>(
+    c: &Constants<V>,
+    p: &Pointers,
+    links: &Across,
+    lower: usize,
+    end: usize,
+) -> bool {
+    let (mut lower, mut moved) = (lower, false);
+    while lower < end {
+        if lower > 0 {
+            let pair = if lower == links.last_row { &links.last } else { &links.usual };
+            // SAFETY: the caller's promise.
+            moved |= unsafe { across_pair::<V, MASK, FAMILY>(c, p, pair, lower - 1) };
+        }
+        lower += 2;
+    }
+    moved
+}
+
+/// The links of a family between a row and the next one: along v, the diagonals to the lower right, to the lower left.
 ///
 /// # Safety
 /// The rows are in the sheet.
 #[inline(always)]
-unsafe fn across_pair<V: Vector, const MASK: bool, const BACK: bool>(
+unsafe fn across_pair<V: Vector, const MASK: bool, const FAMILY: usize>(
     c: &Constants<V>,
     p: &Pointers,
     (along_v, diagonal): &(f32, Family),
     row: usize,
 ) -> bool {
+    let family = FAMILY;
     let upper = row.wrapping_mul(c.stride);
     let lower = upper.wrapping_add(c.stride);
+    // numbers beyond the first and second ends, and beyond the places beside a diagonal
+    let (at, to, links) = match family {
+        0 => (upper, lower, c.columns),
+        1 => (upper, lower.wrapping_add(1), diagonal.links),
+        _ => (upper.wrapping_add(1), lower, diagonal.links),
+    };
     let mut moved = false;
-    let mut part = 0;
-    while part < 3 {
-        let family = if BACK { 2 - part } else { part };
-        // numbers beyond the first and second ends, and beyond the places beside a diagonal
-        let (at, to, links) = match family {
-            0 => (upper, lower, c.columns),
-            1 => (upper, lower.wrapping_add(1), diagonal.links),
-            _ => (upper.wrapping_add(1), lower, diagonal.links),
-        };
-        let mut column = 0;
-        while column < links {
-            let ends = [at.wrapping_add(column), to.wrapping_add(column)];
-            // SAFETY: the caller's promise. Beyond the columns there are zeros, so that no link along v is long there.
-            unsafe {
-                let (limit, mut square) = if family == 0 {
-                    (c.zero.all(*along_v), c.zero.all(*along_v * *along_v))
-                } else {
-                    diagonal.at(c.zero, column)
+    let mut column = 0;
+    while column < links {
+        let ends = [at.wrapping_add(column), to.wrapping_add(column)];
+        // SAFETY: the caller's promise. Beyond the columns there are zeros, so that no link along v is long there.
+        unsafe {
+            let (limit, mut square) = if family == 0 {
+                (c.zero.all(*along_v), c.zero.all(*along_v * *along_v))
+            } else {
+                diagonal.at(c.zero, column)
+            };
+            if MASK {
+                let beside = match family {
+                    0 => None,
+                    1 => Some([ends[0].wrapping_add(1), ends[1].wrapping_sub(1)]),
+                    _ => Some([ends[0].wrapping_sub(1), ends[1].wrapping_add(1)]),
                 };
-                if MASK {
-                    let beside = match family {
-                        0 => None,
-                        1 => Some([ends[0].wrapping_add(1), ends[1].wrapping_sub(1)]),
-                        _ => Some([ends[0].wrapping_sub(1), ends[1].wrapping_add(1)]),
-                    };
-                    square = uncut(c.zero, p, square, ends, beside);
-                }
-                moved |= draw_back(c, p, ends, limit, square);
+                square = uncut(c.zero, p, square, ends, beside);
             }
-            column = column.wrapping_add(V::LANES);
+            moved |= draw_back(c, p, ends, limit, square);
         }
-        part += 1;
+        column = column.wrapping_add(V::LANES);
     }
     moved
 }
 
-/// The links along a row: those that begin at even columns, then those at odd ones.
+/// The links along a row that begin at even columns (`parity` 0) or at odd ones (1).
 ///
 /// # Safety
 /// The row is in the sheet.
 #[inline(always)]
-unsafe fn along_u<V: Vector, const MASK: bool>(c: &Constants<V>, p: &Pointers, family: &Family, row: usize) -> bool {
+unsafe fn along_u<V: Vector, const MASK: bool>(
+    c: &Constants<V>,
+    p: &Pointers,
+    family: &Family,
+    row: usize,
+    parity: usize,
+) -> bool {
     let first = row.wrapping_mul(c.stride);
     let mut moved = false;
+    let mut column = parity;
     if V::LANES == 1 {
-        for parity in 0..2 {
-            let mut column = parity;
-            while column < family.links {
-                let at = first.wrapping_add(column);
-                let ends = [at, at.wrapping_add(1)];
-                // SAFETY: the caller's promise.
-                unsafe {
-                    let (limit, mut square) = family.at(c.zero, column);
-                    if MASK {
-                        square = uncut(c.zero, p, square, ends, None);
-                    }
-                    moved |= draw_back(c, p, ends, limit, square);
+        while column < family.links {
+            let at = first.wrapping_add(column);
+            let ends = [at, at.wrapping_add(1)];
+            // SAFETY: the caller's promise.
+            unsafe {
+                let (limit, mut square) = family.at(c.zero, column);
+                if MASK {
+                    square = uncut(c.zero, p, square, ends, None);
                 }
-                column += 2;
+                moved |= draw_back(c, p, ends, limit, square);
             }
+            column += 2;
         }
         return moved;
     }
     // the links that begin at even columns lie within pairs of vectors; those at odd ones one place on
-    for parity in 0..2 {
-        let mut column = parity;
-        while column < family.links {
-            // SAFETY: the caller's promise.
-            moved |= unsafe { pairs::<V, MASK>(c, p, family, first, column) };
-            column = column.wrapping_add(V::LANES.wrapping_mul(2));
-        }
+    while column < family.links {
+        // SAFETY: the caller's promise.
+        moved |= unsafe { pairs::<V, MASK>(c, p, family, first, column) };
+        column = column.wrapping_add(V::LANES.wrapping_mul(2));
     }
     moved
 }
@@ -376,17 +441,17 @@ unsafe fn pairs<V: Vector, const MASK: bool>(
         }
         let [limit, _] = limit.split(limit_next);
         let [square, _] = square.split(square_next);
-        if !d2.any_above(square) {
+        let moved = d2.any_above(square);
+        if V::LANES < ALWAYS && !moved {
             return false;
         }
         let [w, w_there] = load(c.zero, p.inverse, at).split(load(c.zero, p.inverse, next));
         let e = drawn(c, d, d2, limit, w + w_there);
-        let minus = Three([c.zero; 3]).minus(e);
         let here = Three::choose(d2, square, here.plus(e.times(w)), here);
-        let there = Three::choose(d2, square, there.plus(minus.times(w_there)), there);
+        let there = Three::choose(d2, square, there.minus(e.times(w_there)), there);
         let (here, there) = here.weave(there);
         here.store(&p.x, at);
         there.store(&p.x, next);
-        true
+        moved
     }
 }

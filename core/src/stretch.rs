@@ -104,7 +104,7 @@ impl Cloth<'_> {
         let cell = self.grid.least_rest();
         // a rounding of the product must not decide
         let enough = min(warp, weft) * cell >= 0.999 * LIMIT_SPEED_M_S * self.def.dt_s();
-        self.layout.levels && !self.layout.mask && enough
+        self.layout.levels && self.def.level_cycles == 0 && !self.layout.mask && enough
     }
 
     /// The edge that the sheet hangs from, and whether by all of it or by its two corners.

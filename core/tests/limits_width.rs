@@ -45,6 +45,8 @@ fn sheet(seed: u64, (rows, columns): (u32, u32), features: Features, pins: usize
         strain_limit: [0.02, 0.05, 0.04],
         tether_slack: [0.03, 0.0, 0.05],
         strain_passes: 1 + seed as u32 % 3,
+        // of every fourth seed are the levels; 0: until the limit is kept
+        level_cycles: seed as u32 / 4 % 3,
         gravity_m_s2: [0.3, -9.81, -0.0],
         ..ClothDef::default()
     };

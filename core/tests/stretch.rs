@@ -224,14 +224,15 @@ fn what_is_not_known_is_said_and_bounded() {
 /// docs/limits.md.
 #[test]
 fn limits_that_are_not_kept_are_named() {
-    let report = |features: Features, substeps: u32, limit: f32, side: u32| {
-        let def = ClothDef { features, substeps, strain_limit: [limit; 3], ..ClothDef::default() };
+    let report_of = |features: Features, substeps: u32, limit: f32, side: u32, level_cycles: u32| {
+        let def = ClothDef { features, substeps, strain_limit: [limit; 3], level_cycles, ..ClothDef::default() };
         let mut c = cloth(&squares(side, side, 1.0 / (side - 1) as f32, Families::ALL), &def);
         c.set_stiffness_uniform([300.0, 300.0, 100.0, 5.0]).unwrap();
         c.pin(0).unwrap();
         c.pin(side as usize - 1).unwrap();
         c.predict_stretch().unwrap()
     };
+    let report = |features, substeps, limit, side| report_of(features, substeps, limit, side, 0);
     for (substeps, limit, side) in [(16, 0.1, 32), (32, 0.05, 32), (64, 0.05, 64)] {
         let r = report(Features::LEVELS, substeps, limit, side);
         assert_eq!(r.flags, BudgetFlags(0), "{substeps}, {limit}, {side}");
@@ -248,6 +249,8 @@ fn limits_that_are_not_kept_are_named() {
     ] {
         assert_eq!(report(features, substeps, limit, side).flags, both, "{features:?}, {substeps}, {limit}, {side}");
     }
+    // a given number of cycles promises nothing
+    assert_eq!(report_of(Features::LEVELS, 32, 0.05, 32, 2).flags, both);
     assert_eq!(report(Features::NONE, 16, 0.05, 32).flags.0 & BudgetFlags::LIMIT_NOT_KEPT.0, 0);
 }
 

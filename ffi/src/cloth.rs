@@ -33,13 +33,13 @@ pub unsafe extern "C" fn taut_cloth_def_default(on: *const GridHandle) -> ClothD
         tether_slack: d.tether_slack,
         strain_limit: d.strain_limit,
         strain_passes: d.strain_passes,
+        level_cycles: d.level_cycles,
         hinge_rigidity_n_m: d.hinge_rigidity_n_m,
         sleep_speed_m_s: d.sleep_speed_m_s,
         features: d.features.0,
         gravity_m_s2: d.gravity_m_s2,
         u_axis: d.u_axis,
         v_axis: d.v_axis,
-        reserved: 0,
     }
 }
 
@@ -80,6 +80,7 @@ unsafe fn checked(def: *const ClothDef) -> Result<taut_core::ClothDef, Code> {
         tether_slack: d.tether_slack,
         strain_limit: d.strain_limit,
         strain_passes: d.strain_passes,
+        level_cycles: d.level_cycles,
         hinge_rigidity_n_m: d.hinge_rigidity_n_m,
         sleep_speed_m_s: d.sleep_speed_m_s,
         features: taut_core::Features(d.features),

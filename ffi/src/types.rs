@@ -340,6 +340,9 @@ pub struct ClothDef {
     pub strain_limit: [f32; 3],
     /// Passes of the strain limit in each substep, 1 to 64. Default 2.
     pub strain_passes: u32,
+    /// Cycles through the levels in each substep, 1 to 32: their price is then fixed, and strain_limit is what they aim at. 0: as many as
+    /// it takes that no structural spring is beyond strain_limit, at most 32. Default 0.
+    pub level_cycles: u32,
     /// Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
     pub hinge_rigidity_n_m: f32,
     /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
@@ -353,8 +356,6 @@ pub struct ClothDef {
     pub u_axis: [f32; 3],
     /// Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     pub v_axis: [f32; 3],
-    /// 0.
-    pub reserved: u32,
 }
 
 /// Memory that a call asks for.

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 use taut::Width;
-use taut_lab::fall::{self, Criterion, Guard, Kind, Setting, Trial};
+use taut_lab::fall::{self, Criterion, Guard, Kind, PASSES, Setting, Trial};
 use taut_lab::ledger::Ledger;
 use taut_lab::peers::{self, ENGINES, Engine, Fell, HOW_TO_BUILD, Reached, Row};
 
@@ -138,11 +138,13 @@ fn output(args: &Args, list: &[&str]) -> Result<String, Failure> {
         .map_err(|_| Failure::new(format_args!("{name} answers with something else than text")))
 }
 
-/// The row of this library: tethers and a fast speed limit, which win at every size, with few to many substeps.
+/// The row of this library: tethers, or one cycle through the levels, under a fast speed limit, with few to many substeps.
 fn ours(side: u32, width: Width, ledger: &mut Ledger<Entry>) -> Result<Row, Failure> {
     let mut trials = Vec::new();
-    for substeps in [2, 3, 4, 6, 8, 12] {
-        let setting = Setting { kind: Kind::Tethers, guard: Guard::Fast, substeps, strain: 0.0 };
+    let tethers = [2, 3, 4, 5, 6, 8, 12].map(|substeps| (Kind::Tethers, substeps, PASSES));
+    let levels = [1, 2, 3].map(|substeps| (Kind::LevelsOnce, substeps, 1));
+    for (kind, substeps, passes) in tethers.into_iter().chain(levels) {
+        let setting = Setting { kind, guard: Guard::Fast, substeps, strain: 0.0, passes };
         let key = format!("taut {} {side} {}", width.name(), setting.key());
         let trial = match ledger.get(&key).cloned() {
             Some(Entry::Trial(trial)) => trial,

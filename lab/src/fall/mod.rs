@@ -13,4 +13,4 @@ pub use capes::{CAPES, Capes, capes};
 pub use report::{Row, cost_chart, peak_chart, target_ms, zen5_once_ns};
 pub use run::{Fall, Quality, SECONDS, fall};
 pub use search::{Criterion, MOST_COM_ERROR_MM, REST_P99_PCT, Trial, candidates, cheapest, search};
-pub use setting::{DAMPING_PER_S, Family, Guard, Kind, RATE_HZ, SIDE_M, Setting, families};
+pub use setting::{DAMPING_PER_S, Family, Guard, Kind, PASSES, RATE_HZ, SIDE_M, Setting, families};

@@ -160,12 +160,12 @@ pub fn peak_chart(side: u32, trials: &[Trial]) -> Option<Chart> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Guard, Kind, Quality, Setting};
+    use super::super::{Guard, Kind, PASSES, Quality, Setting};
     use super::*;
     use crate::plot::Figure;
 
     fn trial() -> Trial {
-        let setting = Setting { kind: Kind::Tethers, guard: Guard::Fast, substeps: 10, strain: 0.0 };
+        let setting = Setting { kind: Kind::Tethers, guard: Guard::Fast, substeps: 10, strain: 0.0, passes: PASSES };
         let quality = Quality { mean_pct: 0.1, p99_pct: 0.2, peak_pct: 4.0, com_error_mm: 9.0 };
         Trial { setting, quality: Some(quality), ms_per_s: 24.0, hash: String::new() }
     }

@@ -76,13 +76,13 @@ fn structures_and_values_are_those_of_rust() {
         tether_slack,
         strain_limit,
         strain_passes,
+        level_cycles,
         hinge_rigidity_n_m,
         sleep_speed_m_s,
         features,
         gravity_m_s2,
         u_axis,
-        v_axis,
-        reserved
+        v_axis
     );
     structure!(
         t,
@@ -287,6 +287,7 @@ fn defaults(t: &mut String) {
     equal("(float)d.solver", f64::from(d.solver as u32));
     equal("(float)d.cg_iterations", d.cg_iterations.into());
     equal("(float)d.strain_passes", d.strain_passes.into());
+    equal("(float)d.level_cycles", d.level_cycles.into());
     equal("d.hinge_rigidity_n_m", d.hinge_rigidity_n_m.into());
     equal("d.sleep_speed_m_s", d.sleep_speed_m_s.into());
     equal("(float)d.features", d.features.0.into());
