@@ -262,19 +262,21 @@ impl Cloth<'_> {
         if self.is_within(c, TARGET) && self.tethers_are_slack() {
             return;
         }
-        self.begin_limits();
         let (levels, count) = Level::all(&self.layout);
         let levels = levels.get(..count).unwrap_or(&[]);
+        if count < 2 {
+            self.begin_limits();
+        }
         let numbers = core::mem::take(&mut self.levels.numbers);
         let mut nodes = Nodes::all(numbers, levels, self.layout.mask);
-        for _ in 0..self.def.level_cycles {
-            self.cycle(c, TARGET, levels, &mut nodes);
+        for i in 0..self.def.level_cycles {
+            self.cycle(c, TARGET, levels, &mut nodes, i == 0);
         }
         let most = if self.def.level_cycles == 0 { MOST_CYCLES } else { 0 };
         for i in 0..most {
             // what the first cycles cannot settle is aimed at from farther below
             let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
-            self.cycle(c, target, levels, &mut nodes);
+            self.cycle(c, target, levels, &mut nodes, i == 0);
             if self.sweep_what_is_left(c, target) {
                 break;
             }
@@ -302,8 +304,16 @@ impl Cloth<'_> {
         long.is_none()
     }
 
-    /// All levels once, the coarsest first.
-    fn cycle(&mut self, c: &Substep, target: f32, levels: &[Level], nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS]) {
+    /// All levels once, the coarsest first. `first`: the positions before are kept, where there are coarse levels, on the
+    /// way: a pass over memory less.
+    fn cycle(
+        &mut self,
+        c: &Substep,
+        target: f32,
+        levels: &[Level],
+        nodes: &mut [Option<Nodes<'_>>; MOST_LEVELS],
+        first: bool,
+    ) {
         self.gather_nodes(levels, nodes);
         for k in (1..levels.len()).rev() {
             let Some((nodes, coarser)) = nodes.split_at_mut_checked(k + 1) else {
@@ -325,6 +335,7 @@ impl Cloth<'_> {
                     first: 0,
                     stride: level.stride(),
                     inverse: nodes.inverse,
+                    keep: None,
                     scratch: self.carry,
                 };
                 simd::run(self.width, prolong);
@@ -342,6 +353,7 @@ impl Cloth<'_> {
                 first: self.layout.row(0),
                 stride: self.layout.stride,
                 inverse: self.inverse,
+                keep: first.then(|| self.before.planes.each_mut().map(|p| &mut **p)),
                 scratch: self.carry,
             };
             simd::run(self.width, prolong);

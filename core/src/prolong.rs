@@ -24,6 +24,8 @@ pub(crate) struct Prolong<'p> {
     pub first: usize,
     pub stride: usize,
     pub inverse: &'p [f32],
+    /// Where the positions before are kept, if they are: planes as those of the finer sheet.
+    pub keep: Option<[&'p mut [f32]; 3]>,
     /// 6 rows of `stride` numbers, 8 with a mask.
     pub scratch: &'p mut [f32],
 }
@@ -56,6 +58,15 @@ impl Prolong<'_> {
             let at = self.first + row * self.stride;
             let (inverse, _) = span(self.inverse, at, width).as_chunks::<BLOCK>();
             for (axis, x) in self.x.iter_mut().enumerate() {
+                let kept = self.keep.as_mut().and_then(|planes| planes[axis].get_mut(at..at + width));
+                let (kept, _) = kept.unwrap_or_default().as_chunks_mut::<BLOCK>();
+                for (kept, x) in kept.iter_mut().zip(span(x, at, width).as_chunks::<BLOCK>().0) {
+                    let mut lane = 0;
+                    while lane < BLOCK {
+                        zero.read(x, lane).write(kept, lane);
+                        lane += V::LANES;
+                    }
+                }
                 let (above, _) = span(self.scratch, top + axis * self.stride, width).as_chunks::<BLOCK>();
                 let (below, _) = span(self.scratch, bottom + axis * self.stride, width).as_chunks::<BLOCK>();
                 let (x, _) = x.get_mut(at..at + width).unwrap_or_default().as_chunks_mut::<BLOCK>();
