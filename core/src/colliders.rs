@@ -149,7 +149,9 @@ fn decode(number: impl Fn(usize) -> f32) -> Option<Collider> {
 
 /// The collider at a place of a list.
 pub(crate) fn collider_at(numbers: &[f32], place: usize) -> Option<Collider> {
-    decode(|i| read(numbers, place * COLLIDER_NUMBERS + i))
+    let number = |i| read(numbers, place * COLLIDER_NUMBERS + i);
+    // most places are empty, and this is asked in every substep
+    if number(KIND) == 0.0 { None } else { decode(number) }
 }
 
 /// Whether the numbers of a snapshot from `first` on are colliders that could have been added.

@@ -112,6 +112,8 @@ struct Moving {
 }
 
 impl Moving {
+    // where it is wanted, or it is copied there
+    #[inline(always)]
     fn new(c: &Collider, from: f32, to: f32, rate_hz: f32) -> Moving {
         let solid = Solid::new(&c.shape);
         let (before, now) = (Frame::new(&between(c, from)), Frame::new(&between(c, to)));
@@ -199,7 +201,7 @@ pub(crate) fn push_out(all: &Holders<'_>, width: Supported, c: &Substep, share: 
     let push = PushOut {
         layout: all.layout,
         rows: to.saturating_sub(from),
-        colliders: &colliders,
+        colliders: colliders.get(..count).unwrap_or(&colliders),
         alone: count == 1,
         rules: Rules { dt: c.dt, per_s: 1.0 / c.dt, recovery: RECOVERY * all.spacing },
         x: of.x,
