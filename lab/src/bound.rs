@@ -1,7 +1,8 @@
 //! What one core can do at best, measured on it: the bound that a step's time is compared with.
 //!
 //! A spring costs one exact square root, one exact division and a dozen of additions and multiplications; a processor does
-//! the first two and the others side by side, so the slower of the two is the bound. Memory is a third bound, which is far
+//! the first two and the others side by side, so the slower of the two is the bound. Some processors also work on a root and
+//! a division at a time, so the two are measured together. Memory is a third bound, which is far
 //! below for a cloth that fits into the second cache.
 
 use std::hint::black_box;
@@ -17,6 +18,8 @@ pub struct Throughput {
     pub sqrt_ns: f64,
     /// ns per correctly rounded division.
     pub div_ns: f64,
+    /// ns per square root and division, many of both at a time.
+    pub both_ns: f64,
     /// ns per addition or multiplication, half of each.
     pub arithmetic_ns: f64,
     /// ns per byte that is read or written, in 8 MiB.
@@ -53,7 +56,7 @@ impl Throughput {
             least / (ROUNDS as f64 * numbers)
         };
         let lanes = width.lanes() as f64;
-        let [sqrt, div, arithmetic] = kernels(width)?;
+        let [sqrt, div, both, arithmetic] = kernels(width)?;
         let from = vec![1.0f32; 1 << 20];
         let mut to = vec![0.0f32; 1 << 20];
         let byte_ns = (0..20)
@@ -66,6 +69,7 @@ impl Throughput {
             width,
             sqrt_ns: ns(sqrt, OPERATIONS * lanes),
             div_ns: ns(div, OPERATIONS * lanes),
+            both_ns: 2.0 * ns(both, OPERATIONS * lanes),
             arithmetic_ns: ns(arithmetic, OPERATIONS * lanes),
             byte_ns,
         })
@@ -87,7 +91,7 @@ impl Throughput {
     }
 
     fn bound(&self, springs: f64) -> f64 {
-        let roots = springs * (self.sqrt_ns + self.div_ns);
+        let roots = springs * self.both_ns.min(self.sqrt_ns + self.div_ns);
         // whichever way, twelve forces are summed
         let rest = (springs * SPRING + GATHERED * END + PARTICLE) * self.arithmetic_ns;
         roots.max(rest)
@@ -101,25 +105,25 @@ fn nanoseconds<T>(work: impl FnOnce() -> T) -> f64 {
     start.elapsed().as_nanos() as f64
 }
 
-/// Vector operations of a round of each kernel: eight chains side by side, so that latency does not count.
-const OPERATIONS: f64 = 8.0;
+/// Vector operations of a round of each kernel: twelve chains side by side, so that latency does not count.
+const OPERATIONS: f64 = 12.0;
 
 type Kernel = fn(u64) -> f32;
 
-/// Square roots; divisions; additions and multiplications.
+/// Square roots; divisions; both; additions and multiplications.
 #[cfg(target_arch = "x86_64")]
-fn kernels(width: Width) -> Option<[Kernel; 3]> {
+fn kernels(width: Width) -> Option<[Kernel; 4]> {
     match width {
-        Width::Scalar => Some([x86::scalar::sqrt, x86::scalar::div, x86::scalar::arithmetic]),
-        Width::Sse2 => Some([x86::sse2::sqrt, x86::sse2::div, x86::sse2::arithmetic]),
-        Width::Avx2 => Some([x86::avx2::sqrt, x86::avx2::div, x86::avx2::arithmetic]),
-        Width::Avx512 => Some([x86::avx512::sqrt, x86::avx512::div, x86::avx512::arithmetic]),
+        Width::Scalar => Some([x86::scalar::sqrt, x86::scalar::div, x86::scalar::both, x86::scalar::arithmetic]),
+        Width::Sse2 => Some([x86::sse2::sqrt, x86::sse2::div, x86::sse2::both, x86::sse2::arithmetic]),
+        Width::Avx2 => Some([x86::avx2::sqrt, x86::avx2::div, x86::avx2::both, x86::avx2::arithmetic]),
+        Width::Avx512 => Some([x86::avx512::sqrt, x86::avx512::div, x86::avx512::both, x86::avx512::arithmetic]),
         _ => None,
     }
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn kernels(_: Width) -> Option<[Kernel; 3]> {
+fn kernels(_: Width) -> Option<[Kernel; 4]> {
     None
 }
 
@@ -139,7 +143,7 @@ mod x86 {
                             #[target_feature(enable = $features)]
                             fn inside(rounds: u64) -> f32 {
                                 let $one: $type = $all(black_box(1.0000001));
-                                let mut chains: [$type; 8] = [$all(black_box(1.5)); 8];
+                                let mut chains: [$type; 12] = [$all(black_box(1.5)); 12];
                                 for _ in 0..rounds {
                                     for pair in chains.as_chunks_mut::<2>().0 {
                                         let $x = pair[0];
@@ -157,6 +161,7 @@ mod x86 {
                 }
                 kernel!(sqrt, x, _one, $sqrt(x), $sqrt(x));
                 kernel!(div, x, one, $div(one, x), $div(one, x));
+                kernel!(both, x, one, $sqrt(x), $div(one, x));
                 kernel!(arithmetic, x, one, $mul(x, one), $add(x, one));
             }
         };

@@ -157,6 +157,9 @@ pub enum Limits {
     Levels([f32; 3]),
     /// The same where the budget takes more than [`CUT`] of the field, else nothing.
     WhereCut([f32; 3]),
+    /// One cycle a substep through levels that aim at this strain, with one sweep over the cloth itself and a speed limit of
+    /// eight spacings, since it is for few substeps.
+    OneCycle(f32),
 }
 
 /// The share of a field above which limits stand in for the stiffness that the step cannot carry: what is left stretches more than
@@ -172,6 +175,7 @@ impl Limits {
             Limits::StrainLimit(_) => "strain_limit",
             Limits::Levels(_) => "levels",
             Limits::WhereCut(_) => "levels_where_cut",
+            Limits::OneCycle(_) => "one_cycle",
         }
     }
 
@@ -184,7 +188,7 @@ impl Limits {
     pub fn strains(self) -> Option<[f32; 3]> {
         match self {
             Limits::None => None,
-            Limits::Tethers(strain) | Limits::StrainLimit(strain) => Some([strain; 3]),
+            Limits::Tethers(strain) | Limits::StrainLimit(strain) | Limits::OneCycle(strain) => Some([strain; 3]),
             Limits::Levels(strains) | Limits::WhereCut(strains) => Some(strains),
         }
     }
@@ -200,11 +204,20 @@ impl Limits {
             Limits::None => Features::NONE,
             Limits::Tethers(_) => Features::TETHERS,
             Limits::StrainLimit(_) => Features::STRAIN_LIMIT,
-            Limits::Levels(_) | Limits::WhereCut(_) => Features::LEVELS,
+            Limits::Levels(_) | Limits::WhereCut(_) | Limits::OneCycle(_) => Features::LEVELS,
         };
         let strain = self.strains().unwrap_or(def.strain_limit);
         let slack = self.strains().unwrap_or(def.tether_slack);
-        ClothDef { features: Features(def.features.0 | features.0), strain_limit: strain, tether_slack: slack, ..*def }
+        let def = ClothDef {
+            features: Features(def.features.0 | features.0),
+            strain_limit: strain,
+            tether_slack: slack,
+            ..*def
+        };
+        match self {
+            Limits::OneCycle(_) => ClothDef { level_cycles: 1, strain_passes: 1, speed_limit: 8.0, ..def },
+            _ => def,
+        }
     }
 }
 

@@ -150,6 +150,7 @@ mod tests {
                 _ if spec.solver != Solver::SymplecticEuler => 100.0,
                 Limits::None => 0.6 + bend,
                 Limits::Levels(_) | Limits::WhereCut(_) => 25.0,
+                Limits::OneCycle(_) => 8.0,
                 Limits::Tethers(_) | Limits::StrainLimit(_) => 1.1 + bend,
             };
             step * f64::from(row.substeps)

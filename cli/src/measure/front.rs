@@ -142,8 +142,13 @@ fn measure(set: Set, list: &[Spec], generator: &Generator, ledger: &mut Ledger<R
 
 /// A scoreboard as a table: error and largest stretch under each limit.
 fn board_text(board: &Scoreboard) -> String {
-    const LIMITS: [(&str, &str); 4] =
-        [("none", "alone"), ("tethers", "tethers"), ("strain_limit", "strain limit"), ("levels", "levels")];
+    const LIMITS: [(&str, &str); 5] = [
+        ("none", "alone"),
+        ("tethers", "tethers"),
+        ("strain_limit", "strain limit"),
+        ("levels", "levels"),
+        ("one_cycle", "one cycle"),
+    ];
     let header: Vec<&str> = ["correction"].into_iter().chain(LIMITS.map(|l| l.1)).collect();
     let rows: Vec<Vec<String>> = Correction::ALL
         .iter()

@@ -40,6 +40,8 @@ pub enum Load {
     LevelsIdle,
     /// Levels with much too long.
     Levels,
+    /// One cycle through levels that aim at no strain, one sweep over the cloth itself.
+    OneCycle,
     /// A sphere that is far.
     ColliderFar,
     /// A plane that every particle lies on.
@@ -58,7 +60,7 @@ pub enum Load {
 
 impl Load {
     /// Every load, the plain one first.
-    pub const ALL: [Load; 20] = [
+    pub const ALL: [Load; 21] = [
         Load::Plain,
         Load::StructuralOnly,
         Load::NoBend,
@@ -72,6 +74,7 @@ impl Load {
         Load::StrainLimit,
         Load::LevelsIdle,
         Load::Levels,
+        Load::OneCycle,
         Load::ColliderFar,
         Load::ColliderTouched,
         Load::Targets,
@@ -97,6 +100,7 @@ impl Load {
             Load::StrainLimit => "strain_limit",
             Load::LevelsIdle => "levels_idle",
             Load::Levels => "levels",
+            Load::OneCycle => "one_cycle",
             Load::ColliderFar => "collider_far",
             Load::ColliderTouched => "collider_touched",
             Load::Targets => "targets",
@@ -148,6 +152,7 @@ impl Load {
             Load::StrainLimit => limited(Features::STRAIN_LIMIT, NEAR),
             Load::LevelsIdle => limited(Features::LEVELS, FAR),
             Load::Levels => limited(Features::LEVELS, NEAR),
+            Load::OneCycle => ClothDef { level_cycles: 1, strain_passes: 1, ..limited(Features::LEVELS, 0.0) },
             Load::ColliderFar | Load::ColliderTouched => with(Features::COLLIDERS),
             Load::Targets => with(Features::TARGETS),
             Load::Mass => with(Features::MASS),

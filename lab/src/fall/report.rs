@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use taut::Width;
 
+use super::Kind;
 use super::search::{Criterion, Trial};
 use crate::bound::Throughput;
 use crate::plot::{Axis, Chart, Mark};
@@ -122,7 +123,7 @@ pub fn cost_chart(rows: &[Row], processor: &str) -> Option<Chart> {
         &format!("A falling sheet on {processor}"),
         Axis::log(&along),
         // room for the legend above the lines
-        Axis { range: Some([low / 1.5, 20.0 * high]), ..Axis::log("ms of CPU per simulated second") },
+        Axis { range: Some([low / 1.5, 50.0 * high]), ..Axis::log("ms of CPU per simulated second") },
     );
     for (criterion, name) in [(Criterion::Mean15, "mean 1.5 %"), (Criterion::Peak, "peak")] {
         for width in Width::ALL {
@@ -144,7 +145,7 @@ pub fn peak_chart(side: u32, trials: &[Trial]) -> Option<Chart> {
         Axis::log("peak in %"),
     );
     let mut any = false;
-    for kind in super::Kind::ALL {
+    for kind in Kind::ALL {
         let of = |t: &&Trial| t.setting.kind == kind;
         let points: Vec<[f64; 2]> = trials
             .iter()
@@ -153,14 +154,18 @@ pub fn peak_chart(side: u32, trials: &[Trial]) -> Option<Chart> {
             .filter(|p| p[1] < 1000.0)
             .collect();
         any |= !points.is_empty();
-        chart = chart.with(&kind.name().replace('_', " + "), Mark::Points, points);
+        let name = match kind {
+            Kind::LevelsOnce => "levels, one cycle".into(),
+            _ => kind.name().replace('_', " + "),
+        };
+        chart = chart.with(&name, Mark::Points, points);
     }
     any.then_some(chart)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Guard, Kind, PASSES, Quality, Setting};
+    use super::super::{Guard, PASSES, Quality, Setting};
     use super::*;
     use crate::plot::Figure;
 
@@ -172,7 +177,14 @@ mod tests {
 
     #[test]
     fn a_row_knows_its_bound_and_its_target() {
-        let bound = Throughput { width: Width::Avx2, sqrt_ns: 0.1, div_ns: 0.11, arithmetic_ns: 1e-6, byte_ns: 0.0 };
+        let bound = Throughput {
+            width: Width::Avx2,
+            sqrt_ns: 0.1,
+            div_ns: 0.11,
+            both_ns: 0.21,
+            arithmetic_ns: 1e-6,
+            byte_ns: 0.0,
+        };
         assert!((bound.once_ns() - 1.26).abs() < 1e-12);
         let row = Row::new(64, Criterion::Peak, Width::Avx2, &trial(), 24.0, Some(&bound)).unwrap();
         // 64 * 64 * 60 * 10 particle-steps a second

@@ -8,14 +8,14 @@ use super::{Correction, Row, SIDE};
 const SLACK: f64 = 1.2;
 
 /// Names of the limits, "none" first.
-const LIMITS: [&str; 4] = ["none", "tethers", "strain_limit", "levels"];
+const LIMITS: [&str; 5] = ["none", "tethers", "strain_limit", "levels", "one_cycle"];
 
 /// How a correction fares under a limit at a cost: medians over the scenes in which it has a row that cheap.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cell {
     /// Where the stiffness comes from.
     pub correction: Correction,
-    /// none, tethers, strain_limit or levels.
+    /// none, tethers, strain_limit, levels or one_cycle.
     pub limits: &'static str,
     /// In how many scenes it has a row that cheap.
     pub scenes: usize,

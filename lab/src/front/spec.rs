@@ -187,6 +187,7 @@ impl Spec {
             Limits::Tethers(_) => 4.0,
             Limits::StrainLimit(_) => 5.0,
             Limits::Levels(_) | Limits::WhereCut(_) => 20.0,
+            Limits::OneCycle(_) => 8.0,
         };
         let frames = f64::from(set.seconds(self.scene) * self.rate_hz);
         // what a row costs beside its steps: the yardstick, the start, the measures
@@ -226,6 +227,7 @@ fn quick(scene: Scene, fabric: &'static str, first: bool, rows: &mut Vec<Spec>) 
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         rows.extend([4, 16].map(|substeps| Spec { substeps, limits: Limits::StrainLimit(0.05), ..base }));
         rows.push(Spec { substeps: 8, limits: Limits::levels(0.05), ..base });
+        rows.extend([2, 4].map(|substeps| Spec { substeps, limits: Limits::OneCycle(0.0), ..base }));
     }
     rows.push(Spec { substeps: 2, limits: Limits::levels(0.05), ..new(SIDE, Correction::UniformInertia) });
     implicit(new(SIDE, Correction::Analytic), &[(Solver::Bdf2, 1, 10), (Solver::ImplicitEuler, 1, 10)], rows);
@@ -262,6 +264,9 @@ fn full(scene: Scene, fabric: &'static str, side: u32, rows: &mut Vec<Spec>) {
         }
         for limits in [Limits::levels(0.02), Limits::levels(0.05), Limits::levels(0.1)] {
             rows.extend([1, 2, 4, 8, 16].map(|substeps| Spec { substeps, limits, ..base }));
+        }
+        for limits in [Limits::OneCycle(0.0), Limits::OneCycle(0.02)] {
+            rows.extend([1, 2, 3, 4, 8].map(|substeps| Spec { substeps, limits, ..base }));
         }
     }
     let mut choices = Vec::new();
@@ -300,7 +305,7 @@ mod tests {
         for scene in Scene::ALL {
             let rows = Spec::list(Set::Quick, &[scene]);
             for correction in Correction::ALL {
-                for limits in ["none", "tethers", "strain_limit", "levels"] {
+                for limits in ["none", "tethers", "strain_limit", "levels", "one_cycle"] {
                     let found = rows.iter().filter(|r| r.correction == correction && r.limits.name() == limits);
                     assert!(found.count() >= 1, "{scene}, {correction:?}, {limits}");
                 }
