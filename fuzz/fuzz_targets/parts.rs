@@ -92,6 +92,12 @@ fuzz_target!(|data: &[u8]| {
         def.substeps = 1 + u32::from(input.u8() % 3);
         def.cg_iterations = 1 + u32::from(input.u8() % 4);
         def.hinge_rigidity_n_m = input.near().abs();
+        let limits = input.u8();
+        def.level_cycles = u32::from(limits) % 3;
+        def.strain_passes = 1 + u32::from(limits >> 2) % 3;
+        def.strain_limit = [[0.05, 0.0, 0.01, 0.5][usize::from(limits >> 4) % 4]; 3];
+        def.tether_slack = [[0.0, 0.03][usize::from(limits >> 6) % 2]; 3];
+        def.speed_limit = if limits & 128 != 0 { 8.0 } else { def.speed_limit };
         let mut memory = Memory { size: 0, align: 0 };
         if capi::taut_cloth_memory(grid, &def, &mut memory) != OK {
             return;
