@@ -225,7 +225,7 @@
 #define TAUT_BUDGET_STRETCH_UNKNOWN 2
 
 // A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
-// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+// with a mask or with level_cycles above 0, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
 #define TAUT_BUDGET_LIMIT_NOT_KEPT 4
 
 // Bytes of the block of a grid, on every target.
@@ -608,13 +608,11 @@ typedef struct {
     // How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     // 5 %). Default 0.
     float tether_slack[3];
-    // Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    // Largest strain that the strain limit and the levels aim at; the levels keep it along warp and weft (see level_cycles):
+    // warp, weft, diagonal, each 0 to 10. Default 0.05.
     float strain_limit[3];
-    // Passes of the strain limit in each substep, 1 to 64. Default 2.
+    // Passes of the strain limit in each substep, and of the levels over the cloth itself in each cycle, 1 to 64. Default 2.
     uint32_t strain_passes;
-    // Cycles through the levels in each substep, 1 to 32: their price is then fixed, and strain_limit is what they aim at. 0: as many as
-    // it takes that no structural spring is beyond strain_limit, at most 32. Default 0.
-    uint32_t level_cycles;
     // Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
     float hinge_rigidity_n_m;
     // A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
@@ -628,6 +626,10 @@ typedef struct {
     float u_axis[3];
     // Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     float v_axis[3];
+    // Cycles through the levels in each substep, 1 to 32: at most so many are paid, and strain_limit is what they aim at, nothing
+    // that they promise. 0: as many as it takes that no structural spring is beyond strain_limit, at most 32. Only with
+    // TAUT_FEATURE_LEVELS. Default 0.
+    uint32_t level_cycles;
 } taut_cloth_def;
 
 // What a baked field tells about its fabric beside the stiffness.

@@ -99,12 +99,14 @@ pub struct ClothDef {
     /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     /// 5 %). Default 0.
     pub tether_slack: [f32; 3],
-    /// Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    /// Largest strain that the strain limit and the levels aim at; the levels keep it along warp and weft (see
+    /// [`ClothDef::level_cycles`]): warp, weft, diagonal, each 0 to 10. Default 0.05.
     pub strain_limit: [f32; 3],
-    /// Passes of the strain limit in each substep, 1 to 64. Default 2.
+    /// Passes of the strain limit in each substep, and of the levels over the cloth itself in each cycle, 1 to 64. Default 2.
     pub strain_passes: u32,
-    /// Cycles through the levels in each substep, 1 to 32: what they cost is fixed, and `strain_limit` is what they aim at. 0: as
-    /// many as it takes that no structural spring is beyond `strain_limit`, at most 32. Default 0.
+    /// Cycles through the levels in each substep, 1 to 32: at most so many are paid, and `strain_limit` is what they aim at,
+    /// nothing that they promise. 0: as many as it takes that no structural spring is beyond `strain_limit`, at most 32. Only
+    /// with [`Features::LEVELS`]. Default 0.
     pub level_cycles: u32,
     /// Bending rigidity D of the hinges in N m, 0 to 1e6; see [`crate::BudgetReport::hinge_fraction`]. Default 1e-5.
     pub hinge_rigidity_n_m: f32,

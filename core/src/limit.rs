@@ -143,7 +143,7 @@ impl Pass for Sweeps<'_> {
     }
 }
 
-/// Numbers of a plane in the rows that are worked on at once. What a step of the order below moves is not used before all
+/// Numbers of a plane in every second of the rows that are worked on at once. What a step of the order below moves is not used before all
 /// of them are through it: a processor that reads across what it has just written waits.
 const NUMBERS_AT_ONCE: usize = 256;
 

@@ -58,7 +58,7 @@ impl Prolong<'_> {
             let at = self.first + row * self.stride;
             let (inverse, _) = span(self.inverse, at, width).as_chunks::<BLOCK>();
             for (axis, x) in self.x.iter_mut().enumerate() {
-                let kept = self.keep.as_mut().and_then(|planes| planes[axis].get_mut(at..at + width));
+                let kept = self.keep.as_mut().and_then(|planes| planes.get_mut(axis)?.get_mut(at..at + width));
                 let (kept, _) = kept.unwrap_or_default().as_chunks_mut::<BLOCK>();
                 for (kept, x) in kept.iter_mut().zip(span(x, at, width).as_chunks::<BLOCK>().0) {
                     let mut lane = 0;

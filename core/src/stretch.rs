@@ -18,8 +18,8 @@ impl BudgetFlags {
     /// weight to bear, its warp is more than twice as stiff as its weft or the reverse (two corners), or its rest was not found.
     /// The bound holds.
     pub const STRETCH_UNKNOWN: BudgetFlags = BudgetFlags(2);
-    /// Limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels with a mask, or levels
-    /// with a [`crate::ClothDef::strain_limit`] that is too small for the step ([`LIMIT_SPEED_M_S`]).
+    /// Limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels with a mask or with
+    /// given [`crate::ClothDef::level_cycles`], or levels with a [`crate::ClothDef::strain_limit`] that is too small for the step ([`LIMIT_SPEED_M_S`]).
     pub const LIMIT_NOT_KEPT: BudgetFlags = BudgetFlags(4);
 
     /// Whether every flag of `other` is set.

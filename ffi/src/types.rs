@@ -71,7 +71,7 @@ pub const TAUT_BUDGET_ABOVE_RANGE: u32 = 1;
 /// or its rest was not found. The bound holds.
 pub const TAUT_BUDGET_STRETCH_UNKNOWN: u32 = 2;
 /// A flag of taut_budget_report: limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels
-/// with a mask, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
+/// with a mask or with level_cycles above 0, or levels with a strain_limit below 3 m/s times dt / the smallest rest length.
 pub const TAUT_BUDGET_LIMIT_NOT_KEPT: u32 = 4;
 
 const _: () = {
@@ -336,13 +336,11 @@ pub struct ClothDef {
     /// How much longer than the way through the resting cloth a tether may get: warp, weft, diagonal, each 0 to 10 (0.05 is
     /// 5 %). Default 0.
     pub tether_slack: [f32; 3],
-    /// Largest strain that the strain limit and the levels leave: warp, weft, diagonal, each 0 to 10. Default 0.05.
+    /// Largest strain that the strain limit and the levels aim at; the levels keep it along warp and weft (see level_cycles):
+    /// warp, weft, diagonal, each 0 to 10. Default 0.05.
     pub strain_limit: [f32; 3],
-    /// Passes of the strain limit in each substep, 1 to 64. Default 2.
+    /// Passes of the strain limit in each substep, and of the levels over the cloth itself in each cycle, 1 to 64. Default 2.
     pub strain_passes: u32,
-    /// Cycles through the levels in each substep, 1 to 32: their price is then fixed, and strain_limit is what they aim at. 0: as many as
-    /// it takes that no structural spring is beyond strain_limit, at most 32. Default 0.
-    pub level_cycles: u32,
     /// Bending rigidity D of the hinges in N m, 0 to 1e6. Default 1e-5.
     pub hinge_rigidity_n_m: f32,
     /// A cloth whose particles are all slower than this for half a second sleeps until something wakes it, in m/s, 0 to
@@ -356,6 +354,10 @@ pub struct ClothDef {
     pub u_axis: [f32; 3],
     /// Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     pub v_axis: [f32; 3],
+    /// Cycles through the levels in each substep, 1 to 32: at most so many are paid, and strain_limit is what they aim at, nothing
+    /// that they promise. 0: as many as it takes that no structural spring is beyond strain_limit, at most 32. Only with
+    /// TAUT_FEATURE_LEVELS. Default 0.
+    pub level_cycles: u32,
 }
 
 /// Memory that a call asks for.

@@ -76,13 +76,13 @@ fn structures_and_values_are_those_of_rust() {
         tether_slack,
         strain_limit,
         strain_passes,
-        level_cycles,
         hinge_rigidity_n_m,
         sleep_speed_m_s,
         features,
         gravity_m_s2,
         u_axis,
-        v_axis
+        v_axis,
+        level_cycles
     );
     structure!(
         t,

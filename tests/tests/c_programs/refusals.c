@@ -183,6 +183,7 @@ static int definitions(void)
     WRONG(TAUT_ERROR_OUT_OF_RANGE, compression_limit = 2);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, features = 2048);
     WRONG(TAUT_ERROR_OUT_OF_RANGE, speed_limit = 1e-7f);
+    WRONG(TAUT_ERROR_OUT_OF_RANGE, level_cycles = 33);
     return 0;
 }
 
