@@ -15,6 +15,9 @@ use crate::force::TINY;
 use crate::math::sqrt;
 use crate::simd::{Pass, Three, Vector, load};
 
+#[cfg(test)]
+mod tests;
+
 /// Particles in rows: those of the cloth, or every so manieth of them.
 pub(crate) struct Sheet<'s> {
     pub rows: usize,
