@@ -626,9 +626,9 @@ typedef struct {
     float u_axis[3];
     // Direction of v (along a column, from row 0 on) at the start, 1e-3 to 1e3 long. Default 0, -1, 0.
     float v_axis[3];
-    // Cycles through the levels in each substep, 1 to 32: at most so many are paid, and strain_limit is what they aim at, nothing
-    // that they promise. 0: as many as it takes that no structural spring is beyond strain_limit, at most 32. Only with
-    // TAUT_FEATURE_LEVELS. Default 0.
+    // Cycles through the levels in each substep, 1 to 32: at most so many are paid, and strain_limit is what they aim at,
+    // nothing that they promise. 0: as many as it takes that no structural spring is beyond strain_limit, at most 32. Only
+    // with TAUT_FEATURE_LEVELS. Default 0.
     uint32_t level_cycles;
 } taut_cloth_def;
 

@@ -1,3 +1,4 @@
+use crate::levels::MOST_CYCLES;
 use crate::{Error, Hash64};
 
 /// How the stiffness field is projected to what the step can carry. See [`crate::BudgetReport`].
@@ -214,7 +215,7 @@ impl ClothDef {
             || limits.as_flattened().iter().any(|x| *x > 10.0)
             || !(1..=1000).contains(&self.cg_iterations)
             || !(1..=64).contains(&self.strain_passes)
-            || self.level_cycles > 32
+            || self.level_cycles > MOST_CYCLES
             || self.hinge_rigidity_n_m > 1e6
             || self.sleep_speed_m_s > 1e3
             || !axis(&self.u_axis)

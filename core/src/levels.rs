@@ -22,7 +22,7 @@ const COARSE_SWEEPS: u32 = 4;
 const COARSE_SWEEPS_GIVEN: u32 = 3;
 
 /// Most cycles of a substep. More than a few are needed only where pins move by several cells in a substep.
-const MOST_CYCLES: u32 = 32;
+pub(crate) const MOST_CYCLES: u32 = 32;
 /// Cycles that aim at the usual share of the limit; those after them aim at half of it.
 const GENTLE_CYCLES: u32 = 1;
 
@@ -269,15 +269,12 @@ impl Cloth<'_> {
         }
         let numbers = core::mem::take(&mut self.levels.numbers);
         let mut nodes = Nodes::all(numbers, levels, self.layout.mask);
-        for i in 0..self.def.level_cycles {
-            self.cycle(c, TARGET, levels, &mut nodes, i == 0);
-        }
-        let most = if self.def.level_cycles == 0 { MOST_CYCLES } else { 0 };
-        for i in 0..most {
-            // what the first cycles cannot settle is aimed at from farther below
-            let target = if i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
+        let given = self.def.level_cycles;
+        for i in 0..if given > 0 { given } else { MOST_CYCLES } {
+            // what the first cycles cannot settle is aimed at from farther below, where the limit is to be kept
+            let target = if given > 0 || i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
             self.cycle(c, target, levels, &mut nodes, i == 0);
-            if self.sweep_what_is_left(c, target) {
+            if given == 0 && self.sweep_what_is_left(c, target) {
                 break;
             }
         }

@@ -155,6 +155,7 @@ const NUMBERS_AT_ONCE: usize = 256;
 const ALWAYS: usize = 16;
 
 /// Links that share no particle.
+#[derive(Clone, Copy)]
 enum Links {
     /// Along u, from even columns on (0) or odd ones (1).
     Along(usize),
@@ -174,17 +175,11 @@ const FORWARD: [Links; 8] = [
     Links::Across(0, 1),
     Links::Across(0, 2),
 ];
-/// The order of every second sweep.
-const BACKWARD: [Links; 8] = [
-    Links::Across(0, 2),
-    Links::Across(0, 1),
-    Links::Across(0, 0),
-    Links::Across(1, 2),
-    Links::Across(1, 1),
-    Links::Across(1, 0),
-    Links::Along(0),
-    Links::Along(1),
-];
+/// The order of every second sweep: backwards, but that links along u always begin with the even ones.
+const BACKWARD: [Links; 8] = {
+    let [even, odd, a, b, c, d, e, f] = FORWARD;
+    [f, e, d, c, b, a, even, odd]
+};
 
 /// The links between rows: along v and along the diagonals; those that reach the last row may be shorter.
 struct Across {

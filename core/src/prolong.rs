@@ -59,14 +59,7 @@ impl Prolong<'_> {
             let (inverse, _) = span(self.inverse, at, width).as_chunks::<BLOCK>();
             for (axis, x) in self.x.iter_mut().enumerate() {
                 let kept = self.keep.as_mut().and_then(|planes| planes.get_mut(axis)?.get_mut(at..at + width));
-                let (kept, _) = kept.unwrap_or_default().as_chunks_mut::<BLOCK>();
-                for (kept, x) in kept.iter_mut().zip(span(x, at, width).as_chunks::<BLOCK>().0) {
-                    let mut lane = 0;
-                    while lane < BLOCK {
-                        zero.read(x, lane).write(kept, lane);
-                        lane += V::LANES;
-                    }
-                }
+                copy(kept.unwrap_or_default(), span(x, at, width));
                 let (above, _) = span(self.scratch, top + axis * self.stride, width).as_chunks::<BLOCK>();
                 let (below, _) = span(self.scratch, bottom + axis * self.stride, width).as_chunks::<BLOCK>();
                 let (x, _) = x.get_mut(at..at + width).unwrap_or_default().as_chunks_mut::<BLOCK>();

@@ -19,7 +19,8 @@ impl BudgetFlags {
     /// The bound holds.
     pub const STRETCH_UNKNOWN: BudgetFlags = BudgetFlags(2);
     /// Limits were asked for that this cloth may exceed: tethers or the strain limit alone, levels with a mask or with
-    /// given [`crate::ClothDef::level_cycles`], or levels with a [`crate::ClothDef::strain_limit`] that is too small for the step ([`LIMIT_SPEED_M_S`]).
+    /// given [`crate::ClothDef::level_cycles`], or levels with a [`crate::ClothDef::strain_limit`] that is too small for the
+    /// step ([`LIMIT_SPEED_M_S`]).
     pub const LIMIT_NOT_KEPT: BudgetFlags = BudgetFlags(4);
 
     /// Whether every flag of `other` is set.

@@ -20,7 +20,7 @@ const SIDE: u32 = 32;
 /// Frames that are counted.
 const FRAMES: u32 = 1;
 
-const LOADS: [Load; 12] = [
+const LOADS: [Load; 13] = [
     Load::Plain,
     Load::StructuralOnly,
     Load::NoClamps,
@@ -32,6 +32,7 @@ const LOADS: [Load; 12] = [
     Load::StrainLimit,
     Load::LevelsIdle,
     Load::Levels,
+    Load::OneCycle,
     Load::ColliderFar,
 ];
 

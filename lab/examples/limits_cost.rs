@@ -111,8 +111,8 @@ fn main() -> Result<(), taut::Error> {
                 group.iter().map(move |s| format!("{:.1} ({:.2})", s.ns(), s.ns() / plain))
             });
             let cells: Vec<String> = cells.collect();
-            let peaks: Vec<String> =
-                settings.iter().rev().take(2).rev().map(|s| format!("{:.1}", 100.0 * s.peak)).collect();
+            let last = &settings[settings.len() - 2..];
+            let peaks: Vec<String> = last.iter().map(|s| format!("{:.1}", 100.0 * s.peak)).collect();
             println!("| {} | {side} | {} | {} |", width.name(), cells.join(" | "), peaks.join(", "));
         }
     }

@@ -139,7 +139,8 @@ mod tests {
     use taut::Solver;
 
     /// A grid and a fabric that no row of the table has. Costs are counted in plain steps, so that no clock decides: bend
-    /// springs as 0.4, the others as 0.6 and with tethers as 1.1, what is implicit as 100 and a step of levels as 25.
+    /// springs as 0.4, the others as 0.6 and with tethers as 1.1, what is implicit as 100, a step of levels as 25 and one of a
+    /// single cycle as 8.
     #[test]
     fn picks_meet_the_tolerance_at_a_fair_cost() {
         let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };

@@ -142,7 +142,7 @@ fn output(args: &Args, list: &[&str]) -> Result<String, Failure> {
 fn ours(side: u32, width: Width, ledger: &mut Ledger<Entry>) -> Result<Row, Failure> {
     let mut trials = Vec::new();
     let tethers = [2, 3, 4, 5, 6, 8, 12].map(|substeps| (Kind::Tethers, substeps, PASSES));
-    let levels = [1, 2, 3].map(|substeps| (Kind::LevelsOnce, substeps, 1));
+    let levels = [1, 2, 3].map(|substeps| (Kind::OneCycle, substeps, 1));
     // the last, of which the price of a substep is told, has tethers
     for (kind, substeps, passes) in levels.into_iter().chain(tethers) {
         let setting = Setting { kind, guard: Guard::Fast, substeps, strain: 0.0, passes };

@@ -155,7 +155,7 @@ pub fn peak_chart(side: u32, trials: &[Trial]) -> Option<Chart> {
             .collect();
         any |= !points.is_empty();
         let name = match kind {
-            Kind::LevelsOnce => "levels, one cycle".into(),
+            Kind::OneCycle => "levels, one cycle".into(),
             _ => kind.name().replace('_', " + "),
         };
         chart = chart.with(&name, Mark::Points, points);

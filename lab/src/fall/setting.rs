@@ -35,7 +35,7 @@ pub enum Kind {
     /// Levels with tethers on each of them, as many cycles as keep the limit.
     Levels,
     /// One cycle through the levels in each substep.
-    LevelsOnce,
+    OneCycle,
 }
 
 impl Kind {
@@ -47,7 +47,7 @@ impl Kind {
         Kind::TethersInertia,
         Kind::TethersLimit,
         Kind::Levels,
-        Kind::LevelsOnce,
+        Kind::OneCycle,
     ];
 
     /// The name in reports.
@@ -59,7 +59,7 @@ impl Kind {
             Kind::TethersInertia => "tethers_inertia",
             Kind::TethersLimit => "tethers_limit",
             Kind::Levels => "levels",
-            Kind::LevelsOnce => "levels_once",
+            Kind::OneCycle => "one_cycle",
         }
     }
 }
@@ -127,7 +127,7 @@ impl Setting {
         let limits = match self.kind {
             Kind::Plain | Kind::Inertia => Limits::None,
             Kind::Tethers | Kind::TethersInertia | Kind::TethersLimit => Limits::Tethers(0.0),
-            Kind::Levels | Kind::LevelsOnce => Limits::levels(self.strain),
+            Kind::Levels | Kind::OneCycle => Limits::levels(self.strain),
         };
         let inertia = matches!(self.kind, Kind::Inertia | Kind::TethersInertia);
         let limited = self.kind == Kind::TethersLimit;
@@ -140,7 +140,7 @@ impl Setting {
             speed_limit,
             inertia_radius_m: if inertia { INERTIA_RADIUS * SIDE_M } else { 0.0 },
             inertia_max: INERTIA_MAX,
-            level_cycles: u32::from(self.kind == Kind::LevelsOnce),
+            level_cycles: u32::from(self.kind == Kind::OneCycle),
             strain_passes: self.passes,
             max_pins: 2,
             features: Features::NONE,
@@ -184,7 +184,7 @@ pub fn families(side: u32, quick: bool) -> Vec<Family> {
     let some: &[u32] = if quick { &[3] } else { &[1, 2, 3, 4, 5, 6, 8] };
     for passes in [1, PASSES] {
         for guard in if quick { &[Fast][..] } else { &[Fast, Certified] } {
-            let of = Setting { kind: Kind::LevelsOnce, guard: *guard, strain: 0.0, substeps: 0, passes };
+            let of = Setting { kind: Kind::OneCycle, guard: *guard, strain: 0.0, substeps: 0, passes };
             all.push(Family { of, substeps: some.into() });
         }
     }

@@ -24,7 +24,7 @@ pub struct Row {
     pub cg_iterations: Option<u32>,
     /// all, no_bend or structural.
     pub families: String,
-    /// none, tethers, strain_limit or levels.
+    /// none, tethers, strain_limit, levels or one_cycle.
     pub limits: String,
     /// The slack of the tethers, or the strain of the limit.
     pub limit_pct: Option<f64>,
