@@ -113,7 +113,8 @@
 #define TAUT_CLOTH_NODE_PLANE_(m, n, k)                                                                      \
     (TAUT_ROUND_16_(TAUT_CLOTH_NODE_COUNT_(n, k)) * TAUT_CLOTH_NODE_COUNT_(m, k) + 32)
 #define TAUT_CLOTH_NODE_COUNT_(n, k)                                                                         \
-    ((((size_t)(n) - 2) >> (TAUT_CLOTH_HALVINGS_(n) < (k) ? TAUT_CLOTH_HALVINGS_(n) : (k))) + 2)
+    TAUT_CLOTH_SPANS_((size_t)(n) - 1, TAUT_CLOTH_HALVINGS_(n) < (k) ? TAUT_CLOTH_HALVINGS_(n) : (k))
+#define TAUT_CLOTH_SPANS_(cells, halvings) ((((cells) + (((size_t)1 << (halvings)) >> 1)) >> (halvings)) + 1)
 #define TAUT_CLOTH_HALVINGS_(n)                                                                              \
     (((n) > 8) + ((n) > 16) + ((n) > 32) + ((n) > 64) + ((n) > 128) + ((n) > 256) + ((n) > 512) +            \
      ((n) > 1024) + ((n) > 2048))
@@ -536,8 +537,7 @@ typedef struct {
     float stiffness_n_m[4];
 } taut_plan_def;
 
-// Settings that a scene requires, and what to expect of them. The fields of the names of taut_cloth_def and taut_grid_def
-// go there.
+// Settings that a scene requires, and what to expect of them. taut_plan_apply() writes them into the definitions.
 typedef struct {
     // The solver, a taut_solver.
     uint32_t solver;
@@ -557,6 +557,12 @@ typedef struct {
     float strain_limit;
     // For all three of tether_slack.
     float tether_slack;
+    // Passes of the levels over the cloth itself in each cycle.
+    uint32_t strain_passes;
+    // Cycles through the levels in each substep; 0 = until the limit is kept.
+    uint32_t level_cycles;
+    // The speed limit in rest lengths a substep.
+    float speed_limit;
     // Largest structural strain to expect at rest, with a margin that nine of ten measured rows stay under.
     float strain;
     // CPU time to expect of a frame in ns, with what such scenes mostly need beside: a collider and hinges where a sheet lies on
@@ -858,6 +864,19 @@ TAUT_API
 taut_result taut_plan(const taut_grid_def *on,
                       const taut_plan_def *def,
                       taut_settings *out);
+
+// Writes settings into the definitions of a grid and of a cloth: families, solver, substeps, iterations, inertia, limits and
+// speed limit, and their features beside those that are there. Every other field stays. The stiffness is not part of a
+// definition: after taut_cloth_create() call taut_cloth_set_stiffness_uniform() with 1e8 four times for
+// TAUT_STIFFNESS_STIFFEST, with the fabric's own for TAUT_STIFFNESS_FABRIC.
+//
+// Errors: those of taut_grid_memory, and those of taut_cloth_memory for the definitions as they would be; then nothing is
+// changed.
+// Threads: any.
+TAUT_API
+taut_result taut_plan_apply(const taut_settings *settings,
+                            taut_grid_def *on,
+                            taut_cloth_def *def);
 
 // The default cloth for a grid: 60 Hz x 16 substeps, 0.2 kg/m^2, hanging from particle 0 in the direction -y. The grid
 // tells how many pins there can be; it may be NULL, which means a grid of 256 particles or more.

@@ -95,6 +95,12 @@ inline taut_plan_def plan_def_default() noexcept { return taut_plan_def_default(
     return taut_plan(&on, &def, &out);
 }
 
+/// taut_plan_apply
+[[nodiscard]] inline taut_result apply(const taut_settings &settings, taut_grid_def &on, taut_cloth_def &def) noexcept
+{
+    return taut_plan_apply(&settings, &on, &def);
+}
+
 inline taut_grid_def grid_def_default() noexcept { return taut_grid_def_default(); }
 
 [[nodiscard]] inline taut_result grid_memory(const taut_grid_def &def, taut_memory &out) noexcept

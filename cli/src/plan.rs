@@ -28,6 +28,9 @@ struct Settings {
     inertia_radius_m: f32,
     tether_slack: Option<f32>,
     strain_limit: Option<f32>,
+    level_cycles: Option<u32>,
+    strain_passes: Option<u32>,
+    speed_limit: f32,
     stretch_pct: f32,
     us_per_frame: f32,
     why: Vec<String>,
@@ -64,6 +67,7 @@ pub fn run(args: &args::Plan) -> Result<(), Failure> {
         .collect::<Result<Vec<_>, Failure>>()?;
     let bend = chosen.families.contains(Families::BEND);
     let other_bend = plan_of(&grid, &def, method(&chosen), Some(!bend)).map_err(Failure::new)?;
+    let has_levels = chosen.features.contains(Features::LEVELS);
     let settings = Settings {
         scene: args.scene.name(),
         fabric: fabric.kind,
@@ -83,7 +87,10 @@ pub fn run(args: &args::Plan) -> Result<(), Failure> {
         bend: chosen.families.contains(Families::BEND),
         inertia_radius_m: chosen.inertia_radius_m,
         tether_slack: chosen.features.contains(Features::TETHERS).then_some(0.0),
-        strain_limit: chosen.features.contains(Features::LEVELS).then_some(chosen.limit),
+        strain_limit: has_levels.then_some(chosen.limit),
+        level_cycles: has_levels.then_some(chosen.level_cycles),
+        strain_passes: has_levels.then_some(chosen.strain_passes),
+        speed_limit: chosen.speed_limit,
         stretch_pct: 100.0 * chosen.strain,
         us_per_frame: 1e-3 * chosen.frame_ns,
         why: why(args, &def, &chosen, &others, other_bend.as_ref()),
@@ -108,6 +115,7 @@ fn method(p: &Plan) -> Method {
     match p.stiffness {
         PlanStiffness::Fabric if p.solver == Solver::SymplecticEuler => Method::Whole,
         PlanStiffness::Fabric => Method::Implicit,
+        PlanStiffness::Stiffest if has(Features::LEVELS) && p.level_cycles > 0 => Method::OneCycle,
         PlanStiffness::Stiffest if has(Features::LEVELS) => Method::Levels,
         PlanStiffness::Stiffest if has(Features::TETHERS) => Method::Tethers,
         PlanStiffness::Stiffest if p.inertia_radius_m > 0.0 => Method::Inertia,
@@ -121,6 +129,7 @@ fn name(method: Method) -> &'static str {
         Method::Inertia => "the inertia field",
         Method::Tethers => "tethers",
         Method::Levels => "levels",
+        Method::OneCycle => "one cycle through the levels",
         Method::Whole => "the fabric's own stiffness",
         Method::Implicit => "the implicit solver",
     }
@@ -222,8 +231,15 @@ fn text(s: &Settings) -> String {
     if s.tether_slack.is_some() {
         text += "  tethers     no slack\n";
     }
-    if let Some(limit) = s.strain_limit {
-        text += &format!("  levels      at {:.2} %\n", 100.0 * limit);
+    match (s.strain_limit, s.level_cycles) {
+        (Some(limit), Some(0)) => text += &format!("  levels      that keep {:.2} %\n", 100.0 * limit),
+        (Some(_), Some(_)) => {
+            text += &format!(
+                "  levels      1 cycle a substep that aims at no strain, 1 pass over the cloth, speed limit {}\n",
+                s.speed_limit
+            );
+        }
+        _ => (),
     }
     text +=
         &format!("  stretch     {:.2} % at most\n  time        {:.0} us a frame\n\n", s.stretch_pct, s.us_per_frame);

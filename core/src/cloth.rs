@@ -1,3 +1,4 @@
+use crate::aim::Aim;
 use crate::ambient::Ambient;
 use crate::budget::{self, BudgetReport};
 use crate::colliders::Colliders;
@@ -54,6 +55,7 @@ pub struct Cloth<'a> {
     pub(crate) implicit: Implicit<'a>,
     pub(crate) ambient: Ambient,
     pub(crate) sleep: Sleep,
+    pub(crate) aim: Aim,
     /// Where the local frame is in the world.
     pub(crate) frame: Frame,
     /// Digest of masses and mask.
@@ -138,6 +140,7 @@ impl<'a> Cloth<'a> {
             implicit: Implicit::new(&layout, b)?,
             ambient: Ambient::new(def),
             sleep: Sleep::new(def),
+            aim: Aim::new(def),
             frame: Frame::new(def),
             matter: 0,
             step_index: 0,
@@ -188,6 +191,7 @@ impl<'a> Cloth<'a> {
         self.colliders.numbers.fill(0.0);
         self.reset_targets();
         self.implicit.reset();
+        self.aim = Aim::new(&self.def);
         self.frame = Frame::new(&self.def);
         self.step_index = 0;
         self.stale = true;

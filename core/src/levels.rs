@@ -23,8 +23,6 @@ const COARSE_SWEEPS_GIVEN: u32 = 3;
 
 /// Most cycles of a substep. More than a few are needed only where pins move by several cells in a substep.
 pub(crate) const MOST_CYCLES: u32 = 32;
-/// Cycles that aim at the usual share of the limit; those after them aim at half of it.
-const GENTLE_CYCLES: u32 = 1;
 
 /// Rounds, sweeps of each and rows around for what a cycle leaves.
 const LOCAL_ROUNDS: u32 = 2;
@@ -34,7 +32,9 @@ const MARGIN: usize = 6;
 /// Most levels, the finest included.
 const MOST_LEVELS: usize = 13;
 
-/// Every `span`-th particle along u and v, and the last one of each row and column.
+/// Every `span`-th particle along u and v, and the last one of each row and column; the one before the last is left out where
+/// less than half a span would stay between the two: what so short a cell needs is no coarse matter, and handed down along
+/// the long one beside it, it keeps a sheet from ever resting.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Level {
     /// Particles of the cloth along u and v, less one.
@@ -59,7 +59,8 @@ impl Level {
         });
         let nodes = |d: usize| {
             let (n, s) = (last.get(d).copied().unwrap_or(1), span.get(d).copied().unwrap_or(1).max(1));
-            n.div_ceil(s) + 1
+            // to the nearest number of spans
+            (n + s / 2) / s + 1
         };
         Level { last, span, size: [nodes(0), nodes(1)] }
     }
@@ -93,7 +94,7 @@ impl Level {
     /// Particle of a node along u (`d` 0) or v (1).
     pub fn particle(&self, d: usize, node: usize) -> usize {
         let (s, n) = (self.span.get(d).copied().unwrap_or(1), self.last.get(d).copied().unwrap_or(0));
-        (node * s).min(n)
+        if node + 1 >= self.size.get(d).copied().unwrap_or(2) { n } else { node * s }
     }
 
     /// The node before a particle and the share of the next one.
@@ -174,7 +175,14 @@ fn thin(from: &[f32], first: usize, stride: usize, fine: &Level, to: &mut [f32],
     let ([columns, rows], [nodes, node_rows]) = (fine.size, coarse.size);
     let step = if columns == nodes { 1 } else { 2 };
     for (row, to) in to.chunks_exact_mut(coarse.stride().max(1)).enumerate().take(node_rows) {
-        let row = if rows == node_rows { row } else { (2 * row).min(rows.saturating_sub(1)) };
+        let last = row + 1 == node_rows;
+        let row = if last {
+            rows.saturating_sub(1)
+        } else if rows == node_rows {
+            row
+        } else {
+            2 * row
+        };
         let from = span(from, first + row * stride, columns);
         if step == 1 {
             copy(to, from);
@@ -192,6 +200,8 @@ fn thin(from: &[f32], first: usize, stride: usize, fine: &Level, to: &mut [f32],
         }
         if let Some(last) = from.last() {
             write(to, nodes.saturating_sub(1), *last);
+            // a node more than there are may have been written
+            write(to, nodes, 0.0);
         }
     }
 }
@@ -258,8 +268,10 @@ impl Cloth<'_> {
     /// Cycles from coarse to fine: as many as the definition gives, or until no structural link is longer than its limit, at
     /// most [`MOST_CYCLES`].
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
+        let aim = self.aim.share();
         // only where a cycle would move nothing it is left out: a threshold above that would kick
-        if self.is_within(c, TARGET) && self.tethers_are_slack() {
+        if self.is_within(c, aim) && self.tethers_are_slack() {
+            self.aim.learn(0, || true, c.dt);
             return;
         }
         let (levels, count) = Level::all(&self.layout);
@@ -269,16 +281,20 @@ impl Cloth<'_> {
         }
         let numbers = core::mem::take(&mut self.levels.numbers);
         let mut nodes = Nodes::all(numbers, levels, self.layout.mask);
-        let given = self.def.level_cycles;
-        for i in 0..if given > 0 { given } else { MOST_CYCLES } {
-            // what the first cycles cannot settle is aimed at from farther below, where the limit is to be kept
-            let target = if given > 0 || i < GENTLE_CYCLES { TARGET } else { 0.5 * TARGET };
-            self.cycle(c, target, levels, &mut nodes, i == 0);
+        let (given, mut cycles) = (self.def.level_cycles, 0);
+        while cycles < if given > 0 { given } else { MOST_CYCLES } {
+            // what the first cycle cannot settle is aimed at from farther below, where the limit is to be kept
+            let target = if given > 0 || cycles == 0 { aim } else { 0.5 * TARGET };
+            self.cycle(c, target, levels, &mut nodes, cycles == 0);
+            cycles += 1;
             if given == 0 && self.sweep_what_is_left(c, target) {
                 break;
             }
         }
         self.levels.numbers = numbers;
+        let mut aim = self.aim;
+        aim.learn(cycles, || self.is_kept_well(c), c.dt);
+        self.aim = aim;
         self.finish_limits(c);
     }
 
@@ -411,5 +427,41 @@ impl Cloth<'_> {
         simd::run(self.width, Sweeps { sheet, sweeps });
         let from = nodes.x.each_mut().map(|p| &mut **p);
         simd::run(self.width, TakeOff { from, other: nodes.from.each_ref().map(|p| &**p) });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::{ClothDef, Grid, GridDef};
+    use std::vec::Vec;
+
+    /// The nodes of a level are some of those of the next finer one, no cell at the end is shorter than half a span, and each
+    /// particle is between the two nodes that it is told to be between.
+    #[test]
+    fn levels_are_nested_and_have_no_short_cells() {
+        for columns in (2..=70).chain([89, 90, 97, 99, 100, 129, 255, 1000, 4096]) {
+            let grid = Grid::new(&GridDef { rows: 2, columns, ..GridDef::default() }).unwrap();
+            let l = Layout::new(&grid, &ClothDef::default());
+            let (levels, count) = Level::all(&l);
+            let nodes = |level: &Level| (0..level.size[0]).map(|i| level.particle(0, i)).collect::<Vec<_>>();
+            let mut finer: Vec<usize> = (0..columns as usize).collect();
+            for level in levels.iter().take(count) {
+                let found = nodes(level);
+                assert!(found.iter().all(|p| finer.contains(p)), "{columns}: {found:?} of {finer:?}");
+                assert_eq!((found[0], *found.last().unwrap()), (0, columns as usize - 1));
+                let ([last, _], [span, _]) = (level.last_span(), level.span);
+                assert!(2 * last >= span && 2 * last < 3 * span.max(2), "{columns}: {found:?}");
+                for particle in 0..columns as usize {
+                    let (node, share) = level.before(0, particle);
+                    let (from, to) = (found[node], found[node + 1]);
+                    assert!(from <= particle && particle <= to);
+                    assert_eq!(share, (particle - from) as f32 / (to - from) as f32);
+                }
+                finer = found;
+            }
+        }
     }
 }

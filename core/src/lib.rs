@@ -25,6 +25,7 @@
 #![no_std]
 #![deny(unsafe_code)]
 
+mod aim;
 mod air;
 mod ambient;
 mod around;

@@ -102,6 +102,12 @@ pub struct Plan {
     pub inertia_radius_m: f32,
     /// Strain of the limits and slack of the tethers.
     pub limit: f32,
+    /// Passes of the levels over the cloth itself in each cycle.
+    pub strain_passes: u32,
+    /// Cycles through the levels in each substep; 0 = until the limit is kept.
+    pub level_cycles: u32,
+    /// The speed limit as a share of the smallest rest length per substep.
+    pub speed_limit: f32,
     /// Largest strain to expect at rest, the margin of the law counted in.
     pub strain: f32,
     /// CPU time to expect of a frame in ns, with what such scenes mostly need beside: a collider and hinges where a sheet lies on
@@ -122,6 +128,9 @@ impl Plan {
             inertia_radius_m: self.inertia_radius_m,
             strain_limit: [self.limit; 3],
             tether_slack: [if self.features.contains(Features::LEVELS) { self.limit } else { 0.0 }; 3],
+            strain_passes: self.strain_passes,
+            level_cycles: self.level_cycles,
+            speed_limit: self.speed_limit,
             ..*def
         }
     }
@@ -143,11 +152,20 @@ pub enum Method {
     Whole = 4,
     /// The fabric's own stiffness with implicit Euler, one substep and ten iterations.
     Implicit = 5,
+    /// `Plain` with one cycle through the levels in each substep that aims at no strain at all.
+    OneCycle = 6,
 }
 
 /// All methods.
-pub const METHODS: [Method; 6] =
-    [Method::Plain, Method::Inertia, Method::Tethers, Method::Levels, Method::Whole, Method::Implicit];
+pub const METHODS: [Method; 7] = [
+    Method::Plain,
+    Method::Inertia,
+    Method::Tethers,
+    Method::OneCycle,
+    Method::Levels,
+    Method::Whole,
+    Method::Implicit,
+];
 
 /// ln(strain) of a cloth of its own stiffness = constant + grid ln(n) + the sum over warp, weft, shear of a share times
 /// ln(weight per area times L / stiffness), n = cells along the longer side; `margin` is how far the rows lie above it at
@@ -171,6 +189,39 @@ struct Price {
     step: f32,
 }
 
+/// What levels that keep a limit do with two substeps. What they cost is the exponential of constant + grid ln(n) +
+/// limit ln(limit), which three of four measured rows stay under.
+#[derive(Clone, Copy, Debug)]
+struct LevelsLaw {
+    /// The largest strain at rest of all grids with each limit of [`table::LIMITS`]: what lies on something is pushed out last.
+    worst: [f32; 3],
+    constant: f32,
+    grid: f32,
+    limit: f32,
+}
+
+impl LevelsLaw {
+    /// The largest limit whose worst strain is at most this, if it was seen to be kept.
+    fn limit(&self, strain: f32) -> Option<f32> {
+        let (mut limit, mut worst) = (table::LIMITS[0], self.worst[0]);
+        if strain < worst {
+            return None;
+        }
+        for (next, next_worst) in table::LIMITS.into_iter().zip(self.worst).skip(1) {
+            if strain < next_worst {
+                return Some(limit + (next - limit) * (strain - worst) / (next_worst - worst));
+            }
+            (limit, worst) = (next, next_worst);
+        }
+        Some(limit + (strain - worst))
+    }
+
+    fn price(&self, cells: f32, limit: f32) -> Price {
+        let ln = self.constant + self.grid * libm::logf(cells) + self.limit * libm::logf(limit);
+        Price { constant: libm::expf(ln), grid: 0.0, step: 0.0 }
+    }
+}
+
 /// What bend springs do.
 #[derive(Clone, Copy, Debug)]
 struct Bend {
@@ -189,13 +240,13 @@ struct Row {
     plain: Strains,
     inertia: Strains,
     tethers: Strains,
+    one_cycle: Strains,
     whole: FabricLaw,
     implicit: FabricLaw,
     plain_price: Price,
     tethers_price: Price,
-    levels_price: Price,
-    /// How far above their limit levels let a sheet stretch at rest: what lies on something is pushed out last.
-    levels_over: f32,
+    one_cycle_price: Price,
+    levels: LevelsLaw,
     implicit_price: Price,
 }
 
@@ -205,14 +256,14 @@ const RADIUS: f32 = 0.3;
 const MOST: u32 = 256;
 /// Iterations of the implicit solver.
 const ITERATIONS: u32 = 10;
-/// Tethers and levels with fewer substeps were not measured.
+/// Tethers, levels and one cycle with fewer substeps were not measured; levels are planned with these.
 const LEAST_LIMITED: u32 = 2;
+/// The speed limit of one cycle in spacings a substep: it is for few substeps.
+const ONE_CYCLE_SPEED: f32 = 8.0;
 /// What levels aim at as a share of the tolerance.
-const AIM: f32 = 0.95;
+const AIM: f32 = 0.98;
 /// No substep is cheaper than this in plain steps, wherever a law leads to.
 const LEAST_PRICE: f32 = 0.3;
-/// The least strain limit that levels were seen to keep.
-const LEAST_LIMIT: f32 = 0.02;
 
 /// The settings that the scene requires: the cheapest that meet the tolerance within the time, or, where none do, those of
 /// the least strain that fit the time (then [`Plan::meets`] is false).
@@ -324,6 +375,8 @@ impl Sheet<'_> {
         let (mut solver, mut features, mut radius, mut limit) =
             (Solver::SymplecticEuler, Features::NONE, 0.0, tolerance);
         let mut stiffness = PlanStiffness::Stiffest;
+        let d = ClothDef::default();
+        let (mut cycles, mut passes, mut speed_limit) = (d.level_cycles, d.strain_passes, d.speed_limit);
         let (strain, price) = match method {
             Method::Plain => (self.by_step(&row.plain, substeps), row.plain_price),
             Method::Inertia => {
@@ -334,13 +387,15 @@ impl Sheet<'_> {
                 features = Features::TETHERS;
                 (self.by_step(&row.tethers, substeps), row.tethers_price)
             }
+            Method::OneCycle => {
+                (features, limit, cycles, passes, speed_limit) = (Features::LEVELS, 0.0, 1, 1, ONE_CYCLE_SPEED);
+                (self.by_step(&row.one_cycle, substeps), row.one_cycle_price)
+            }
             Method::Levels => {
                 features = Features::LEVELS;
-                limit = AIM * (tolerance - row.levels_over);
-                if limit < AIM * LEAST_LIMIT {
-                    return None;
-                }
-                (limit + row.levels_over, row.levels_price)
+                let strain = AIM * tolerance;
+                limit = row.levels.limit(strain)?;
+                (strain, row.levels.price(self.cells, limit))
             }
             Method::Whole => {
                 if substeps < self.whole_substeps() {
@@ -354,7 +409,8 @@ impl Sheet<'_> {
                 (self.by_fabric(&row.implicit), row.implicit_price)
             }
         };
-        if substeps < LEAST_LIMITED && matches!(method, Method::Tethers | Method::Levels) {
+        let is_limited = matches!(method, Method::Tethers | Method::OneCycle | Method::Levels);
+        if substeps < LEAST_LIMITED && is_limited {
             return None;
         }
         // tethers need pins, inertia too
@@ -377,6 +433,9 @@ impl Sheet<'_> {
             stiffness,
             inertia_radius_m: radius,
             limit,
+            strain_passes: passes,
+            level_cycles: cycles,
+            speed_limit,
             strain,
             frame_ns: padded * substeps as f32 * price * self.def.plain_ns,
             meets: strain <= tolerance,
@@ -440,6 +499,16 @@ mod tests {
     }
 
     #[test]
+    fn limits_are_those_whose_worst_strain_is_asked_for() {
+        let [a, b, c] = table::LIMITS;
+        let law = LevelsLaw { worst: [0.03, 0.055, c], constant: 0.0, grid: 0.0, limit: 0.0 };
+        assert_eq!(law.limit(0.029), None);
+        for (strain, limit) in [(0.03, a), (0.055, b), (c, c), (c + 0.1, c + 0.1), (0.0425, 0.5 * (a + b))] {
+            assert!((law.limit(strain).unwrap() - limit).abs() < 1e-6, "{strain}");
+        }
+    }
+
+    #[test]
     fn what_does_not_fit_the_time_is_answered() {
         let def = PlanDef { tolerance: 0.01, ..PlanDef::default() };
         let free = plan(&grid(32), &def).unwrap();
@@ -472,15 +541,20 @@ mod tests {
 
     #[test]
     fn a_plan_makes_a_definition_that_core_takes() {
+        let mut cycles = 0;
         for hold in Hold::ALL {
             for tolerance in [0.3, 0.05, 0.001] {
                 for method in METHODS {
                     let def = PlanDef { hold, tolerance, ..PlanDef::default() };
                     if let Some(p) = plan_of(&grid(32), &def, method, None).unwrap() {
-                        assert_eq!(p.fit(&ClothDef::default()).check(), Ok(()), "{p:?}");
+                        let fitted = p.fit(&ClothDef::default());
+                        assert_eq!(fitted.check(), Ok(()), "{p:?}");
+                        assert_eq!(fitted.level_cycles, u32::from(method == Method::OneCycle));
+                        cycles += fitted.level_cycles;
                     }
                 }
             }
         }
+        assert!(cycles > 0, "no plan of one cycle");
     }
 }

@@ -3,14 +3,14 @@
 //! | bytes | content |
 //! |---|---|
 //! | 0..8 | `TAUTSNAP` |
-//! | 8..12, 12..16 | version 2, number of bytes |
+//! | 8..12, 12..16 | version 3, number of bytes |
 //! | 16..24 | digest of grid, definition, masses and mask |
 //! | 24..32 | step index |
 //! | 32..36, 36..40 | number of pins, bits: 1 if forces are pending, 2 if the surroundings (gravity, damping, air, rest lengths) were changed, 4 if the frame was moved |
 //! | then | the frame, if it was moved: position and rotation (x, y, z, w), seven f64 |
 //! | then | x, y, z, vx, vy, vz: f32 `[rows][columns]` each |
 //! | then | the pending forces, three times f32 `[rows][columns]`, if any |
-//! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2, frames of quiet if the cloth may sleep |
+//! | then | the state of the optional parts: surroundings if they were changed, colliders, targets, memory of BDF2, frames of quiet if the cloth may sleep, aim of the levels where they keep a limit |
 //! | then | each pin: particle as f32, from x y z, to x y z |
 //! | last 8 | [`Hash64::bulk`](crate::Hash64::bulk) of all bytes before |
 //!
@@ -19,6 +19,7 @@
 //! The frame is in a snapshot (without it the next one would be a leap), but not in the hash: two machines that shift their
 //! worlds differently agree on the local state.
 
+use crate::aim::Aim;
 use crate::ambient::Ambient;
 use crate::frame::Frame;
 use crate::layout::{PIN_NUMBERS, read};
@@ -26,7 +27,7 @@ use crate::mask::is_absent;
 use crate::{Cloth, Error, Hash64, in_default_environment};
 
 const MAGIC: &[u8; 8] = b"TAUTSNAP";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 40;
 /// Bits of the flags.
 const PULL: u32 = 1;
@@ -61,8 +62,8 @@ impl Cloth<'_> {
     }
 
     /// The state of the optional parts, empty where they are off.
-    fn parts(&self) -> [&[f32]; 4] {
-        [self.colliders.numbers, self.targets.planes, self.implicit.state(), self.sleep.state()]
+    fn parts(&self) -> [&[f32]; 5] {
+        [self.colliders.numbers, self.targets.planes, self.implicit.state(), self.sleep.state(), self.aim.state()]
     }
 
     fn digest(&self) -> u64 {
@@ -87,7 +88,7 @@ impl Cloth<'_> {
         if self.ambient.changed {
             h.floats(&self.ambient.numbers);
         }
-        for part in self.parts() {
+        for part in self.parts().into_iter().take(4).chain([self.aim.lowered()]) {
             if !part.is_empty() {
                 h.floats(part);
             }
@@ -235,6 +236,7 @@ impl Cloth<'_> {
             &mut *self.targets.planes,
             self.implicit.state_mut(),
             self.sleep.state_mut(),
+            self.aim.state_mut(),
         ];
         let mut next = parts_at;
         for part in parts {
@@ -267,12 +269,16 @@ impl Cloth<'_> {
         Ok(())
     }
 
-    /// A snapshot holds a possible sleep, and ascending pins of existing particles.
+    /// A snapshot holds a possible sleep, a possible aim, and ascending pins of existing particles.
     fn check_numbers(&self, number: &impl Fn(usize) -> f32, count: usize, pins: usize) -> Result<(), Error> {
         let first = count - PIN_NUMBERS * pins;
         // the last of the parts
+        let aim = first - self.aim.state().len();
+        if aim < first {
+            Aim::check(number(aim))?;
+        }
         if !self.sleep.state().is_empty() {
-            self.sleep.check(number(first - 1))?;
+            self.sleep.check(number(aim - 1))?;
         }
         let mut least = 0.0;
         for i in 0..pins {

@@ -150,6 +150,7 @@ impl Cloth<'_> {
     }
 
     pub(crate) fn keep_good(&mut self) {
+        self.aim.keep_good();
         let planes = [&*self.x.x, &*self.x.y, &*self.x.z, &*self.v.x, &*self.v.y, &*self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact_mut(size).zip(planes) {
@@ -158,6 +159,7 @@ impl Cloth<'_> {
     }
 
     pub(crate) fn back_to_good(&mut self) {
+        self.aim.back_to_good();
         let planes = [&mut *self.x.x, &mut *self.x.y, &mut *self.x.z, &mut *self.v.x, &mut *self.v.y, &mut *self.v.z];
         let size = self.layout.plane.max(1);
         for (good, plane) in self.good.chunks_exact(size).zip(planes) {

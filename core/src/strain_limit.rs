@@ -1,6 +1,7 @@
 //! The strain limit (Provot 1995): after each substep no structural or diagonal spring is longer than its family allows, as
 //! far as the sweeps reach. What is moved is also given to the velocity, x += D and v += D/dt.
 
+use crate::aim::KEPT_WELL;
 use crate::force::Substep;
 use crate::layout::{Layout, copy, take};
 use crate::limit::{Reach, Sheet, Sweeps};
@@ -82,6 +83,12 @@ impl Cloth<'_> {
     pub(crate) fn is_within(&mut self, c: &Substep, share: f32) -> bool {
         let (width, rows) = (self.width, self.rows());
         simd::run(width, LongRows { sheet: self.sheet(c, share, rows), diagonals: true, any: true }).is_none()
+    }
+
+    /// Whether no structural link is beyond a share of its limit that a sheet well within it has.
+    pub(crate) fn is_kept_well(&mut self, c: &Substep) -> bool {
+        let (width, rows) = (self.width, self.rows());
+        simd::run(width, LongRows { sheet: self.sheet(c, KEPT_WELL, rows), diagonals: false, any: true }).is_none()
     }
 
     /// The first and the last row of some where a structural link is beyond its limit.

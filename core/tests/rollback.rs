@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Random, bare, bits, cloth, snapshot, squares, stir};
-use taut::{Cloth, ClothDef, Error, Families, Features, Grid, Vector3};
+use taut::{Cloth, ClothDef, Error, Families, Features, Grid, StepFlags, Vector3};
 
 /// Inertia, pulls and everything else that is state.
 fn def() -> ClothDef {
@@ -175,7 +175,7 @@ fn the_bytes_are_those_that_are_documented() {
     let u64_at = |at: usize| u64::from_le_bytes(s[at..at + 8].try_into().unwrap());
     let number = |i: usize| f32::from_bits(u32_at(40 + 4 * i));
     assert_eq!(&s[..8], b"TAUTSNAP");
-    assert_eq!((u32_at(8), u32_at(12)), (2, s.len() as u32));
+    assert_eq!((u32_at(8), u32_at(12)), (3, s.len() as u32));
     assert_eq!(u64_at(24), 5);
     assert_eq!((u32_at(32), u32_at(36)), (2, 1));
     let n = 9 * 11;
@@ -213,6 +213,37 @@ fn forged(saved: &[u8], change: impl Fn(&mut [u8])) -> Vec<u8> {
     s
 }
 
+/// What the levels of a sheet aim at that hangs in its limit is state: without it the frames after a restore would be others.
+#[test]
+fn the_aim_of_the_levels_is_state() {
+    let def = ClothDef { features: Features::LEVELS, substeps: 2, ..ClothDef::default() };
+    let mut c = cloth(&squares(32, 32, 1.0 / 31.0, Families::ALL), &def);
+    c.set_stiffness_uniform([1e8; 4]).unwrap();
+    c.pin(0).unwrap();
+    (0..90).for_each(|_| assert_eq!(c.step().unwrap(), StepFlags(0)));
+    let saved = snapshot(&mut c);
+    // the last number before the pin
+    let at = saved.len() - 8 - 4 * 7 - 4;
+    let aim = f32::from_le_bytes(saved[at..at + 4].try_into().unwrap());
+    assert!((0.0..0.9).contains(&aim), "never lowered: {aim}");
+    (0..30).for_each(|_| assert_eq!(c.step().unwrap(), StepFlags(0)));
+    let after = (c.state_hash(), bits(&c));
+    c.restore(&saved).unwrap();
+    (0..30).for_each(|_| assert_eq!(c.step().unwrap(), StepFlags(0)));
+    assert_eq!((c.state_hash(), bits(&c)), after);
+
+    let with = |aim: f32| forged(&saved, |s| s[at..at + 4].copy_from_slice(&aim.to_le_bytes()));
+    for (bad, error) in [(0.91, Error::OutOfRange), (-0.1, Error::OutOfRange), (f32::NAN, Error::NotFinite)] {
+        assert_eq!(c.restore(&with(bad)), Err(error));
+    }
+    c.restore(&with(0.9)).unwrap();
+    (0..30).for_each(|_| assert_eq!(c.step().unwrap(), StepFlags(0)));
+    assert_ne!(bits(&c), after.1, "the aim is of no consequence");
+    c.reset();
+    let start = snapshot(&mut c);
+    assert_eq!(start[start.len() - 12..start.len() - 8], 0.9f32.to_le_bytes());
+}
+
 #[test]
 fn damaged_snapshots_are_refused_and_change_nothing() {
     let mut c = made();
@@ -241,8 +272,8 @@ fn damaged_snapshots_are_refused_and_change_nothing() {
 
     let put = |at: usize, number: u32| forged(&saved, |s| s[at..at + 4].copy_from_slice(&number.to_le_bytes()));
     refuse(&put(0, 7), Error::WrongKind, "magic");
-    refuse(&put(8, 1), Error::UnsupportedVersion, "an older version");
-    refuse(&put(8, 3), Error::UnsupportedVersion, "a newer version");
+    refuse(&put(8, 2), Error::UnsupportedVersion, "an older version");
+    refuse(&put(8, 4), Error::UnsupportedVersion, "a newer version");
     refuse(&put(12, 47), Error::Shape, "size too small");
     refuse(&put(12, u32::MAX), Error::Truncated, "size too large");
     refuse(&put(16, 0), Error::Foreign, "digest");

@@ -47,7 +47,11 @@ pub unsafe extern "C" fn taut_cloth_def_default(on: *const GridHandle) -> ClothD
 /// As [`value`].
 unsafe fn checked(def: *const ClothDef) -> Result<taut_core::ClothDef, Code> {
     // SAFETY: promised by the caller; a definition is plain numbers.
-    let d = unsafe { value(def) }?;
+    check(unsafe { value(def) }?)
+}
+
+/// What core makes of a definition. It does not look at the numbers.
+pub(crate) fn check(d: &ClothDef) -> Result<taut_core::ClothDef, Code> {
     if d.size as usize != size_of::<ClothDef>() || d.cookie != COOKIE {
         return Err(Code::TAUT_ERROR_BAD_DEFINITION);
     }

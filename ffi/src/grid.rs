@@ -26,7 +26,10 @@ pub extern "C" fn taut_grid_def_default() -> GridDef {
 /// As [`value`].
 pub(crate) unsafe fn checked(def: *const GridDef) -> Result<taut_core::Grid, Code> {
     // SAFETY: promised by the caller; a definition is plain numbers.
-    let d = unsafe { value(def) }?;
+    check(unsafe { value(def) }?)
+}
+
+pub(crate) fn check(d: &GridDef) -> Result<taut_core::Grid, Code> {
     if d.size as usize != size_of::<GridDef>() || d.cookie != COOKIE {
         return Err(Code::TAUT_ERROR_BAD_DEFINITION);
     }

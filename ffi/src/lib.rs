@@ -33,6 +33,7 @@ mod handle;
 mod grid;
 
 mod plan;
+mod plan_types;
 
 mod cloth;
 

@@ -1,9 +1,10 @@
-use taut_core::plan::{Hold, plan};
+use taut_core::plan::plan;
 
-use crate::grid;
+use crate::plan_types::{Plan, PlanDef};
 use crate::pointer::{Out, value};
 use crate::result::{Code, answer};
-use crate::types::{GridDef, Plan, PlanDef};
+use crate::types::{ClothDef, GridDef};
+use crate::{cloth, grid};
 
 const COOKIE: u32 = 0x6e61_6c70;
 
@@ -41,7 +42,10 @@ pub unsafe extern "C" fn taut_plan(on: *const GridDef, def: *const PlanDef, out:
         if d.size as usize != size_of::<PlanDef>() || d.cookie != COOKIE {
             return Err(Code::TAUT_ERROR_BAD_DEFINITION);
         }
-        let hold = Hold::ALL.into_iter().find(|h| *h as u32 == d.hold).ok_or(Code::TAUT_ERROR_OUT_OF_RANGE)?;
+        let hold = taut_core::plan::Hold::ALL
+            .into_iter()
+            .find(|h| *h as u32 == d.hold)
+            .ok_or(Code::TAUT_ERROR_OUT_OF_RANGE)?;
         let p = plan(
             &on,
             &taut_core::plan::PlanDef {
@@ -66,10 +70,48 @@ pub unsafe extern "C" fn taut_plan(on: *const GridDef, def: *const PlanDef, out:
             inertia_radius_m: p.inertia_radius_m,
             strain_limit: fitted.strain_limit[0],
             tether_slack: fitted.tether_slack[0],
+            strain_passes: fitted.strain_passes,
+            level_cycles: fitted.level_cycles,
+            speed_limit: fitted.speed_limit,
             strain: p.strain,
             frame_ns: p.frame_ns,
             meets: p.meets.into(),
         });
+        Ok(())
+    })
+}
+
+/// Writes settings into the definitions of a grid and of a cloth: families, solver, substeps, iterations, inertia, limits and
+/// speed limit, and their features beside those that are there. Every other field stays. The stiffness is not part of a
+/// definition: after taut_cloth_create() call taut_cloth_set_stiffness_uniform() with 1e8 four times for
+/// TAUT_STIFFNESS_STIFFEST, with the fabric's own for TAUT_STIFFNESS_FABRIC.
+///
+/// Errors: those of taut_grid_memory, and those of taut_cloth_memory for the definitions as they would be; then nothing is
+/// changed.
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn taut_plan_apply(settings: *const Plan, on: *mut GridDef, def: *mut ClothDef) -> Code {
+    answer(|| {
+        // SAFETY: the caller lends settings and two definitions, which are plain numbers and are written to.
+        let (p, g, d, to_grid, to_cloth) =
+            unsafe { (*value(settings)?, *value(on)?, *value(def)?, Out::new(on)?, Out::new(def)?) };
+        let new_grid = GridDef { families: p.families, ..g };
+        let new_cloth = ClothDef {
+            solver: p.solver,
+            substeps: p.substeps,
+            cg_iterations: p.cg_iterations,
+            features: d.features | p.features,
+            inertia_radius_m: p.inertia_radius_m,
+            strain_limit: [p.strain_limit; 3],
+            tether_slack: [p.tether_slack; 3],
+            strain_passes: p.strain_passes,
+            level_cycles: p.level_cycles,
+            speed_limit: p.speed_limit,
+            ..d
+        };
+        taut_core::Cloth::memory(&grid::check(&new_grid)?, &cloth::check(&new_cloth)?)?;
+        to_grid.set(new_grid);
+        to_cloth.set(new_cloth);
         Ok(())
     })
 }

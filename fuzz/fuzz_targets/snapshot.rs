@@ -30,7 +30,8 @@ fn restore(cloth: &mut Cloth<'_>, bytes: &[u8]) {
 
 fuzz_target!(|data: &[u8]| {
     let grid = Grid::new(&GridDef { rows: 3, columns: 4, ..GridDef::default() }).unwrap();
-    let def = ClothDef { substeps: 2, features: Features::PULL, inertia_radius_m: 0.5, ..ClothDef::default() };
+    let features = Features(Features::PULL.0 | Features::LEVELS.0);
+    let def = ClothDef { substeps: 2, features, inertia_radius_m: 0.5, ..ClothDef::default() };
     let mut block = vec![0.0; Cloth::memory(&grid, &def).unwrap()];
     let mut cloth = Cloth::create(&grid, &def, &mut block).unwrap();
     cloth.set_stiffness_uniform([500.0, 400.0, 100.0, 8.0]).unwrap();

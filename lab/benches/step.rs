@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use taut::{Cloth, ClothDef, Families, Features, Grid, GridDef, Width};
+use taut_lab::block::Block;
 
 const SIDES: [u32; 3] = [32, 64, 128];
 const NO_BEND: Families = Families(3);
@@ -13,8 +14,8 @@ const NO_BEND: Families = Families(3);
 /// Hands a swinging cloth to `work`.
 fn with_cloth(side: u32, families: Families, def: &ClothDef, work: impl FnOnce(&mut Cloth<'_>)) {
     let grid = Grid::new(&GridDef { rows: side, columns: side, families, ..GridDef::default() }).expect("a valid grid");
-    let mut block = vec![0.0; Cloth::memory(&grid, def).expect("a valid definition")];
-    let mut cloth = Cloth::create(&grid, def, &mut block).expect("the block is large enough");
+    let mut block = Block::new(Cloth::memory(&grid, def).expect("a valid definition"));
+    let mut cloth = Cloth::create(&grid, def, block.numbers_mut()).expect("the block is large enough");
     cloth.set_stiffness_uniform([5000.0, 5000.0, 1500.0, 100.0]).expect("a stiffness");
     cloth.pin(0).expect("a pin");
     cloth.pin(side as usize - 1).expect("a pin");

@@ -5,6 +5,7 @@ use serde::Serialize;
 use taut::field::FieldView;
 use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Solver, noise};
 
+use crate::block::Block;
 use crate::fabric::Fabric;
 use crate::metrics::{self, StretchPct};
 use crate::scene::Scene;
@@ -356,11 +357,11 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
         ..ClothDef::default()
     };
     let mut def = case.scene.fit(&model.limits.fit(&base), shape.0, shape.1);
-    let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
+    let mut block = Block::new(Cloth::memory(&grid, &def)?);
     let field = setting.field(case);
     // what the budget says of the field where the scene pins it
     let mut told = |def: &ClothDef| {
-        let mut cloth = Cloth::create(&grid, def, &mut block)?;
+        let mut cloth = Cloth::create(&grid, def, block.numbers_mut())?;
         cloth.set_stiffness_field(&FieldView::new(4, shape.0, shape.1, &field)?);
         case.scene.set_up(&mut cloth, 0)?;
         cloth.budget()
@@ -375,7 +376,7 @@ pub fn run_model(case: &Case, model: &Model, mut look: impl FnMut(&Cloth<'_>, Fr
     {
         def = case.scene.fit(&base, shape.0, shape.1);
     }
-    let mut cloth = Cloth::create(&grid, &def, &mut block)?;
+    let mut cloth = Cloth::create(&grid, &def, block.numbers_mut())?;
     let scaled: Vec<f32>;
     let field = if *setting == Setting::Random {
         // scale so that the largest is what the budget would give a uniform cloth

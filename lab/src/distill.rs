@@ -29,8 +29,8 @@ const LAW_SIDES: [u32; 3] = [16, 32, 64];
 /// Substeps with which bend springs are tried the other way.
 const BEND_SUBSTEPS: [u32; 3] = [8, 16, 32];
 
-/// The limit of the rows with levels.
-pub(crate) const LEVELS: f64 = 0.05;
+/// The limits of the rows with levels.
+pub(crate) const LIMITS: [f32; 3] = [0.02, 0.05, 0.1];
 
 /// The scene that stands for a hold.
 pub fn scene_of(hold: Hold) -> Scene {
@@ -61,13 +61,15 @@ pub fn hold_of(scene: Scene) -> Hold {
 pub struct Point {
     /// The hold.
     pub hold: Hold,
-    /// plain, inertia, tethers, levels, whole, implicit, or bend: plain with bend springs where the others have none, and without
+    /// plain, inertia, tethers, one_cycle, levels, whole, implicit, or bend: plain with bend springs where the others have none, and without
     /// where they have.
     pub method: String,
     /// Particles of a side.
     pub side: u32,
     /// Substeps of a frame at 60 Hz.
     pub substeps: u32,
+    /// The limit of levels; 0 of other methods.
+    pub limit: f64,
     /// Warp, weft, shear in N/m and kg/m^2 of the fabric.
     pub fabric: [f64; 4],
     /// Largest structural strain late in the run.
@@ -154,12 +156,12 @@ pub fn methods(hold: Hold, scene: Scene, side: u32, fabric: &'static str) -> Vec
             rows.push((hold, "tethers", Spec { substeps, limits: Limits::Tethers(0.0), ..base }));
         }
     }
-    // larger ones take long to come to rest under them
-    if side <= 64 {
-        for substeps in [2, 4] {
-            let base = new(Correction::Uniform);
-            rows.push((hold, "levels", Spec { substeps, limits: Limits::levels(LEVELS as f32), ..base }));
-        }
+    for substeps in [2, 3, 4, 6, 8, 12] {
+        rows.push((hold, "one_cycle", Spec { substeps, limits: Limits::OneCycle(0.0), ..new(Correction::Uniform) }));
+    }
+    for limit in LIMITS {
+        let base = new(Correction::Uniform);
+        rows.push((hold, "levels", Spec { substeps: 2, limits: Limits::levels(limit), ..base }));
     }
     rows
 }
@@ -173,6 +175,7 @@ pub fn point(hold: Hold, method: &str, spec: &Spec, row: &Row) -> Option<Point> 
         method: method.into(),
         side: spec.side,
         substeps: spec.substeps,
+        limit: if method == "levels" { f64::from(spec.limits.strain()?) } else { 0.0 },
         fabric: [warp, weft, shear, f64::from(fabric.density_kg_m2)],
         strain: row.stretch_max_pct? / 100.0,
         cost: row.cost_in_plain_steps,
@@ -180,7 +183,7 @@ pub fn point(hold: Hold, method: &str, spec: &Spec, row: &Row) -> Option<Point> 
 }
 
 const HEADER: &str =
-    "hold,method,side,substeps,warp_n_per_m,weft_n_per_m,shear_n_per_m,density_kg_m2,strain,plain_steps";
+    "hold,method,side,substeps,limit,warp_n_per_m,weft_n_per_m,shear_n_per_m,density_kg_m2,strain,plain_steps";
 
 /// The points as CSV, rounded as the table takes them.
 pub fn csv(points: &[Point]) -> String {
@@ -189,8 +192,8 @@ pub fn csv(points: &[Point]) -> String {
         let [warp, weft, shear, density] = p.fabric;
         let _ = writeln!(
             text,
-            "{:?},{},{},{},{warp:.3},{weft:.3},{shear:.3},{density:.4},{:.6},{:.3}",
-            p.hold, p.method, p.side, p.substeps, p.strain, p.cost
+            "{:?},{},{},{},{:.2},{warp:.3},{weft:.3},{shear:.3},{density:.4},{:.6},{:.3}",
+            p.hold, p.method, p.side, p.substeps, p.limit, p.strain, p.cost
         );
     }
     text
@@ -211,9 +214,10 @@ pub fn read(text: &str) -> Option<Vec<Point>> {
                 method: cells.get(1)?.to_string(),
                 side: cells.get(2)?.parse().ok()?,
                 substeps: cells.get(3)?.parse().ok()?,
-                fabric: [number(4)?, number(5)?, number(6)?, number(7)?],
-                strain: number(8)?,
-                cost: number(9)?,
+                limit: number(4)?,
+                fabric: [number(5)?, number(6)?, number(7)?, number(8)?],
+                strain: number(9)?,
+                cost: number(10)?,
             })
         })
         .collect()

@@ -7,7 +7,7 @@ use taut::{Error, Features, Grid, GridDef};
 use crate::compare::Limits;
 use crate::distill::{self, hold_of};
 use crate::fabric::Fabric;
-use crate::front::{Bench, Correction, Row, Spec};
+use crate::front::{Correction, Row, Spec};
 use crate::scene::Scene;
 
 /// A pick and what came of it.
@@ -55,7 +55,9 @@ pub fn question(scene: Scene, fabric: &Fabric, tolerance: f32) -> PlanDef {
 /// A plan as a row.
 pub fn row_of(plan: &Plan, scene: Scene, fabric: &'static str, side: u32) -> Spec {
     let has = |f| plan.features.contains(f);
-    let limits = if has(Features::LEVELS) {
+    let limits = if has(Features::LEVELS) && plan.level_cycles > 0 {
+        Limits::OneCycle(plan.limit)
+    } else if has(Features::LEVELS) {
         Limits::levels(plan.limit)
     } else if has(Features::TETHERS) {
         Limits::Tethers(0.0)
@@ -77,15 +79,15 @@ pub fn row_of(plan: &Plan, scene: Scene, fabric: &'static str, side: u32) -> Spe
     }
 }
 
-/// Asks for plans of one scene and judges them. `cost` says what a row costs, `look` sees the name of every row before it is
-/// measured; each is measured so many `times`, of which the cheapest counts: what the machine does beside only adds.
+/// Measures rows, all of one scene and grid.
+pub type Measure<'m> = dyn FnMut(&[Spec]) -> Result<Vec<Row>, String> + 'm;
+
+/// Asks for plans of one scene and judges them. `measure` measures their rows and those beside them, `cost` says what one costs.
 pub fn judge(
-    bench: &mut Bench<'_>,
     (scene, fabric, side): (Scene, &'static str, u32),
     tolerances: &[f32],
-    times: u32,
+    measure: &mut Measure<'_>,
     cost: &dyn Fn(&Spec, &Row) -> f64,
-    look: &mut dyn FnMut(&str),
 ) -> Result<Vec<Verdict>, String> {
     let text = |e: Error| e.to_string();
     let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).map_err(text)?;
@@ -95,33 +97,30 @@ pub fn judge(
     specs.push(distill::implicit(hold, scene, side, fabric));
     specs.extend(specs.clone().iter().map(|s| Spec { families: distill::other(s.families), ..*s }));
     specs.push(Spec::reference(scene, fabric, side));
-    let mut measure = |spec: &Spec| {
-        look(&spec.key());
-        let mut row = bench.measure(spec)?;
-        let strain = row.stretch_max_pct.map_or(f64::INFINITY, |pct| pct / 100.0);
-        let mut least = cost(spec, &row);
-        for _ in 1..times {
-            row = bench.measure(spec)?;
-            least = least.min(cost(spec, &row));
-        }
-        Ok::<_, String>((strain, least, spec.key()))
-    };
-    let rows = specs.iter().map(&mut measure).collect::<Result<Vec<_>, String>>()?;
-    let mut verdicts = Vec::new();
+    let beside = specs.len();
+    let mut plans = Vec::new();
     for &tolerance in tolerances {
         let p = plan(&grid, &question(scene, &known, tolerance)).map_err(text)?;
         let spec = row_of(&p, scene, fabric, side);
         // measured twice it would be compared with its own noise
-        let key = spec.key();
-        let (strain, cost) = match rows.iter().find(|r| r.2 == key) {
-            Some(row) => (row.0, row.1),
-            None => measure(&spec).map(|r| (r.0, r.1))?,
-        };
-        let met = rows.iter().filter(|r| r.0 <= f64::from(tolerance));
-        let best = met.min_by(|a, b| a.1.total_cmp(&b.1)).map(|r| (r.1, r.2.clone()));
-        verdicts.push(Verdict { spec, tolerance, told: p.strain, strain, cost, best, promised: p.meets });
+        let at = specs.iter().position(|s| s.key() == spec.key()).unwrap_or(specs.len());
+        if at == specs.len() {
+            specs.push(spec);
+        }
+        plans.push((p, at));
     }
-    Ok(verdicts)
+    let rows: Vec<(f64, f64)> = measure(&specs)?
+        .iter()
+        .zip(&specs)
+        .map(|(row, spec)| (row.stretch_max_pct.map_or(f64::INFINITY, |pct| pct / 100.0), cost(spec, row)))
+        .collect();
+    let verdict = |(tolerance, (p, at)): (&f32, (Plan, usize))| {
+        let met = rows.iter().zip(&specs).take(beside).filter(|(r, _)| r.0 <= f64::from(*tolerance));
+        let best = met.min_by(|(a, _), (b, _)| a.1.total_cmp(&b.1)).map(|(r, spec)| (r.1, spec.key()));
+        let (strain, cost) = rows[at];
+        Verdict { spec: specs[at], tolerance: *tolerance, told: p.strain, strain, cost, best, promised: p.meets }
+    };
+    Ok(tolerances.iter().zip(plans).map(verdict).collect())
 }
 
 /// Share of the promises that were kept, share of the picks within 1.3 times the best row's cost, and the dearest of them.
@@ -135,7 +134,7 @@ pub fn summary(verdicts: &[Verdict]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::front::Set;
+    use crate::front::{Bench, Set};
     use taut::Solver;
 
     /// A grid and a fabric that no row of the table has. Costs are counted in plain steps, so that no clock decides: bend
@@ -156,8 +155,9 @@ mod tests {
             };
             step * f64::from(row.substeps)
         };
+        let mut measure = |specs: &[Spec]| specs.iter().map(|s| bench.measure(s)).collect();
         for scene in [Scene::Hang2, Scene::Edge] {
-            let verdicts = judge(&mut bench, (scene, "wool", 22), &[0.02, 0.05, 0.1], 1, &cost, &mut |_| ()).unwrap();
+            let verdicts = judge((scene, "wool", 22), &[0.02, 0.05, 0.1], &mut measure, &cost).unwrap();
             for v in &verdicts {
                 assert!(v.promised && v.meets(), "{scene}: {v:?}");
                 assert!(v.strain <= f64::from(v.told), "{scene}: {v:?}");

@@ -2,6 +2,7 @@
 
 pub mod against;
 pub mod atlas;
+pub mod block;
 pub mod bound;
 pub mod compare;
 pub mod cost;

@@ -3,8 +3,8 @@
 use super::table::CELLS;
 use crate::math::{max, min, sqrt};
 
-/// What was measured of a method: ln of the largest strain of a sheet of 1 m at 60 Hz under 9.81 m/s^2. Never less with fewer
-/// substeps or on a finer grid; where it blew up ln 2.
+/// What was measured of a method: ln of the largest strain of a sheet of 1 m at 60 Hz under 9.81 m/s^2. Never less on a
+/// finer grid; where it blew up ln 2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strains {
     /// Substeps that were measured, upwards; empty where the method makes no sense.

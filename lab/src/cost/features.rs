@@ -7,6 +7,7 @@ use taut::{Cloth, Error, Width};
 
 use super::load::Load;
 use super::step::times;
+use crate::block::Block;
 use crate::metrics::percentile;
 
 /// Rounds in which the loads take turns.
@@ -36,15 +37,13 @@ pub fn features(side: u32, time: Duration, mut progress: impl FnMut(f32)) -> Res
     let numbers = Load::ALL.map(|load| load.memory(side));
     let mut blocks = Vec::with_capacity(numbers.len());
     for n in numbers {
-        blocks.push(vec![0.0f32; n? + 16]);
+        blocks.push(Block::new(n?));
     }
     let bytes: Vec<f64> =
-        blocks.iter().map(|b| 4.0 * (b.len() - 16) as f64 / f64::from(side) / f64::from(side)).collect();
+        blocks.iter_mut().map(|b| 4.0 * b.numbers_mut().len() as f64 / f64::from(side) / f64::from(side)).collect();
     let mut cloths: Vec<Cloth<'_>> = Vec::with_capacity(blocks.len());
     for (load, block) in Load::ALL.into_iter().zip(&mut blocks) {
-        let first = block.as_ptr().align_offset(64).min(16);
-        let end = first + block.len() - 16;
-        cloths.push(load.create(side, Width::best(), &mut block[first..end])?);
+        cloths.push(load.create(side, Width::best(), block.numbers_mut())?);
     }
     let mut best = vec![f64::INFINITY; cloths.len()];
     let all = (ROUNDS as usize * cloths.len()) as f32;

@@ -7,6 +7,7 @@ use serde::Serialize;
 use taut::{Cloth, Error, Width};
 
 use super::load::Load;
+use crate::block::Block;
 use crate::bound::Throughput;
 use crate::metrics::percentile;
 
@@ -62,9 +63,8 @@ pub fn step(
     time: Duration,
 ) -> Result<StepRow, Error> {
     let numbers = load.memory(side)?;
-    let mut memory = vec![0.0f32; numbers + 16];
-    let first = memory.as_ptr().align_offset(64).min(16);
-    let mut cloth = load.create(side, width, &mut memory[first..first + numbers])?;
+    let mut block = Block::new(numbers);
+    let mut cloth = load.create(side, width, block.numbers_mut())?;
     let times = times(&mut cloth, side, time)?;
     let bound = bound.filter(|_| load.solver() == "symplectic_euler");
     let median = percentile(&times, 0.5);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use taut::plan::Hold;
 
-use super::{LEVELS, Point, SIDES, bends};
+use super::{LIMITS, Point, SIDES, bends};
 
 /// Strains whose neighbours decide about margins: nobody asks for less or wants more.
 const RANGE: std::ops::RangeInclusive<f64> = 0.005..=0.25;
@@ -86,10 +86,28 @@ fn price(rows: &[&Point], steps: bool) -> String {
     format!("Price {{ constant: {:.2}, grid: {:.2}, step: {:.2} }}", c[0], c[1], c[2])
 }
 
-/// The price that three of four rows stay under: how much levels have to do is no law of the grid.
-fn dearest(rows: Vec<&Point>) -> String {
-    let price = quantile(rows.into_iter().map(cost), 0.75);
-    format!("Price {{ constant: {price:.2}, grid: 0.00, step: 0.00 }}")
+/// What levels do: the worst strains by limit, and the law of the price that three of four rows stay under.
+fn levels(rows: &[&Point]) -> String {
+    let mut worst = LIMITS;
+    for (worst, limit) in worst.iter_mut().zip(LIMITS) {
+        let of = rows.iter().filter(|p| (p.limit - f64::from(limit)).abs() < 1e-6);
+        *worst = of.map(|p| p.strain as f32).fold(limit, f32::max);
+    }
+    // a larger limit never stretches less
+    for i in 1..worst.len() {
+        worst[i] = worst[i].max(worst[i - 1] + 1e-3);
+    }
+    let x = |p: &Point| vec![1.0, f64::from(p.side - 1).ln(), p.limit.ln()];
+    let all: Vec<(Vec<f64>, f64)> = rows.iter().map(|p| (x(p), cost(p).ln())).collect();
+    let c = fit(&all).coefficients;
+    let above = all.iter().map(|(x, y)| y - x.iter().zip(&c).map(|(x, c)| x * c).sum::<f64>());
+    let constant = c[0] + quantile(above, 0.75);
+    format!(
+        "LevelsLaw {{ worst: [{}], constant: {constant:.3}, grid: {:.3}, limit: {:.3} }}",
+        worst.map(|w| format!("{w:.4}")).join(", "),
+        c[1],
+        c[2]
+    )
 }
 
 /// The strains of a method, and what is added to them for what lies between.
@@ -108,10 +126,9 @@ fn strains(points: &[Point], hold: Hold, method: &str) -> String {
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or_default();
     for i in 0..ln.len() {
-        for j in (0..substeps.len()).rev() {
-            let finer = if j + 1 < substeps.len() { ln[i][j + 1] } else { f64::MIN };
+        for j in 0..substeps.len() {
             let coarser = if i > 0 { ln[i - 1][j] } else { f64::MIN };
-            ln[i][j] = ln[i][j].max(finer).max(coarser);
+            ln[i][j] = ln[i][j].max(coarser);
         }
     }
     let list = |values: Vec<String>| format!("&[{}]", values.join(", "));
@@ -224,12 +241,13 @@ fn fabric_law<'a>(rows: impl Iterator<Item = &'a Point>) -> String {
 pub fn table(points: &[Point]) -> String {
     let mut text = String::from(
         "//! Written by the lab's example `distill` from lab/data/plan.csv: do not edit.\n\n\
-         use super::strains::Strains;\nuse super::{Bend, FabricLaw, Hold, Price, Row};\n\n",
+         use super::strains::Strains;\nuse super::{Bend, FabricLaw, Hold, LevelsLaw, Price, Row};\n\n",
     );
     let cells: Vec<String> = SIDES.iter().map(|side| format!("{}.0", side - 1)).collect();
     let _ = write!(
         text,
-        "/// Cells along a side of the grids that were measured.\npub(super) const CELLS: [f32; {}] = [{}];\n\n\
+        "/// The limits of levels that were measured.\npub(super) const LIMITS: [f32; 3] = {LIMITS:?};\n\n\
+         /// Cells along a side of the grids that were measured.\npub(super) const CELLS: [f32; {}] = [{}];\n\n\
          /// A row for each hold, in the order of their numbers.\n#[rustfmt::skip]\npub(super) const ROWS: [Row; Hold::ALL.len()] = [\n",
         cells.len(),
         cells.join(", ")
@@ -237,22 +255,21 @@ pub fn table(points: &[Point]) -> String {
     for hold in Hold::ALL {
         let of = |method: &'static str| points.iter().filter(move |p| p.hold == hold && p.method == method);
         let price = |rows: Vec<&Point>, steps: bool| price(&rows, steps);
-        // levels meet any limit with two substeps, so no others are planned
-        let levels = of("levels").filter(|p| p.substeps == 2).collect();
-        let over = of("levels").map(|p| p.strain - LEVELS).fold(0.0, f64::max);
         let _ = writeln!(
             text,
-            "    // {hold:?}\n    Row {{\n        bend: {},\n        plain: {},\n        inertia: {},\n        tethers: {},\n        whole: {},\n        implicit: {},\n        \
-             plain_price: {},\n        tethers_price: {},\n        levels_price: {},\n        levels_over: {over:.4},\n        implicit_price: {},\n    }},",
+            "    // {hold:?}\n    Row {{\n        bend: {},\n        plain: {},\n        inertia: {},\n        tethers: {},\n        one_cycle: {},\n        whole: {},\n        implicit: {},\n        \
+             plain_price: {},\n        tethers_price: {},\n        one_cycle_price: {},\n        levels: {},\n        implicit_price: {},\n    }},",
             bend(points, hold),
             strains(points, hold, "plain"),
             strains(points, hold, "inertia"),
             strains(points, hold, "tethers"),
+            strains(points, hold, "one_cycle"),
             fabric_law(of("whole")),
             fabric_law(of("implicit")),
             price(of("plain").chain(of("inertia")).collect(), true),
             price(of("tethers").collect(), true),
-            dearest(levels),
+            price(of("one_cycle").collect(), true),
+            levels(&of("levels").collect::<Vec<_>>()),
             price(of("implicit").collect(), false),
         );
     }

@@ -4,6 +4,7 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 use taut::{Cloth, ClothDef, ColliderDef, ColliderId, Error, Features, Grid, GridDef, Pose, Shape, Vector3, Width};
 
+use crate::block::Block;
 use crate::metrics::percentile;
 
 /// How many characters there are.
@@ -101,10 +102,9 @@ pub fn capes(width: Width, frames: u32) -> Result<Capes, Error> {
     };
     // each block begins on a cache line
     let numbers = Cloth::memory(&grid, &def)?.next_multiple_of(16);
-    let mut memory = vec![0.0f32; CAPES * numbers + 16];
-    let first = memory.as_ptr().align_offset(64).min(16);
+    let mut memory = Block::new(CAPES * numbers);
     let mut all = Vec::with_capacity(CAPES);
-    for (i, block) in memory[first..first + CAPES * numbers].chunks_exact_mut(numbers).enumerate() {
+    for (i, block) in memory.numbers_mut().chunks_exact_mut(numbers).enumerate() {
         all.push(Character::new(i, width, &grid, &def, block)?);
     }
     let mut times = Vec::new();

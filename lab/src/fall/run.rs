@@ -8,6 +8,7 @@ use taut::field::FieldView;
 use taut::{Cloth, Error, StepFlags, Width};
 
 use super::setting::{RATE_HZ, Setting};
+use crate::block::Block;
 use crate::metrics::percentile;
 
 /// Simulated time in s. What is asked of the sheet at rest is asked of the last second.
@@ -61,9 +62,8 @@ impl Fall {
 pub fn fall(side: u32, setting: &Setting, width: Width, com_m: &[[f64; 3]]) -> Result<Fall, Error> {
     let (grid, def) = (Setting::grid(side)?, setting.def());
     let numbers = Cloth::memory(&grid, &def)?;
-    let mut memory = vec![0.0f32; numbers + 16];
-    let first = memory.as_ptr().align_offset(64).min(16);
-    let mut cloth = Cloth::create(&grid, &def, &mut memory[first..first + numbers])?;
+    let mut block = Block::new(numbers);
+    let mut cloth = Cloth::create(&grid, &def, block.numbers_mut())?;
     cloth.set_width(width)?;
     let n = side as usize;
     let field = Setting::field(side);

@@ -3,6 +3,8 @@
 use cpu_time::ThreadTime;
 use taut::{Cloth, ClothDef, Error, Grid, GridDef};
 
+use crate::block::Block;
+
 /// Frames that are stepped before the clock counts, and those that count.
 const WARM: u32 = 2;
 const FRAMES: u32 = 9;
@@ -12,8 +14,8 @@ const FRAMES: u32 = 9;
 pub fn plain_ns() -> Result<f64, Error> {
     let grid = Grid::new(&GridDef::default())?;
     let def = ClothDef::default();
-    let mut block = vec![0.0; Cloth::memory(&grid, &def)?];
-    let mut cloth = Cloth::create(&grid, &def, &mut block)?;
+    let mut block = Block::new(Cloth::memory(&grid, &def)?);
+    let mut cloth = Cloth::create(&grid, &def, block.numbers_mut())?;
     cloth.set_stiffness_uniform([1e8; 4])?;
     cloth.pin(0)?;
     cloth.pin(grid.columns() - 1)?;

@@ -144,6 +144,9 @@ int surroundings(const taut::Grid &grid)
     taut_settings settings;
     DONE(taut::plan(planned, wish, settings));
     REQUIRE(settings.meets == 1 && settings.strain <= wish.tolerance && settings.substeps >= 1);
+    taut_cloth_def applied = taut::cloth_def_default(grid);
+    DONE(taut::apply(settings, planned, applied));
+    REQUIRE(applied.substeps == settings.substeps && applied.strain_limit[2] == settings.strain_limit);
     wish.budget_ns = 1.0f;
     REQUIRE(taut::plan(planned, wish, settings) == TAUT_ERROR_NO_PLAN);
 

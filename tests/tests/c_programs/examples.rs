@@ -69,6 +69,14 @@ fn the_cape_stays_on_the_shoulders() {
 }
 
 #[test]
+fn a_plan_keeps_what_it_tells() {
+    let lines = lines("plan.c");
+    assert_eq!(lines.len(), 3);
+    // more than one way to step, and at this size one of them is a given number of cycles
+    assert!(lines.iter().any(|l| l.contains("one cycle")), "{lines:?}");
+}
+
+#[test]
 fn one_cloth_on_two_threads_has_the_bits_of_one() {
     let lines = lines("bands.c");
     assert_eq!(lines.len(), 1);

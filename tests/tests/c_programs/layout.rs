@@ -12,6 +12,10 @@ use crate::library::run_c;
 #[path = "../../../ffi/src/types.rs"]
 mod types;
 
+#[allow(dead_code, reason = "only the layout is looked at")]
+#[path = "../../../ffi/src/plan_types.rs"]
+mod plan_types;
+
 /// The static assertions about a structure.
 macro_rules! structure {
     ($text:expr, $rust:ty, $c:literal, $($field:ident),+) => {{
@@ -86,7 +90,7 @@ fn structures_and_values_are_those_of_rust() {
     );
     structure!(
         t,
-        types::PlanDef,
+        plan_types::PlanDef,
         "taut_plan_def",
         size,
         cookie,
@@ -101,7 +105,7 @@ fn structures_and_values_are_those_of_rust() {
     );
     structure!(
         t,
-        types::Plan,
+        plan_types::Plan,
         "taut_settings",
         solver,
         substeps,
@@ -112,6 +116,9 @@ fn structures_and_values_are_those_of_rust() {
         inertia_radius_m,
         strain_limit,
         tether_slack,
+        strain_passes,
+        level_cycles,
+        speed_limit,
         strain,
         frame_ns,
         meets

@@ -29,6 +29,26 @@ static int plans(void)
     WRONG_PLAN(TAUT_ERROR_STEP_SIZE, rate_hz, 0.0f);
     WRONG_PLAN(TAUT_ERROR_NO_PLAN, budget_ns, 1.0f);
 #undef WRONG_PLAN
+    taut_cloth_def cloth_def = taut_cloth_def_default(NULL);
+    REQUIRE(taut_plan(&on, &def, &settings) == TAUT_OK);
+    const taut_grid_def on_before = on;
+    const taut_cloth_def cloth_before = cloth_def;
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_plan_apply(NULL, &on, &cloth_def));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_plan_apply(&settings, NULL, &cloth_def));
+    REFUSED(TAUT_ERROR_NULL_POINTER, taut_plan_apply(&settings, &on, NULL));
+    REFUSED(TAUT_ERROR_MISALIGNED, taut_plan_apply(off(&settings), &on, &cloth_def));
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_plan_apply(&untouched, &on, &cloth_def));
+    taut_settings wrong_settings = settings;
+    wrong_settings.level_cycles = 33;
+    REFUSED(TAUT_ERROR_OUT_OF_RANGE, taut_plan_apply(&wrong_settings, &on, &cloth_def));
+    wrong_settings = settings;
+    wrong_settings.speed_limit = (float)NAN;
+    REFUSED(TAUT_ERROR_NOT_FINITE, taut_plan_apply(&wrong_settings, &on, &cloth_def));
+    cloth_def.cookie = 0;
+    REFUSED(TAUT_ERROR_BAD_DEFINITION, taut_plan_apply(&settings, &on, &cloth_def));
+    cloth_def.cookie = cloth_before.cookie;
+    REQUIRE(!memcmp(&on, &on_before, sizeof on) && !memcmp(&cloth_def, &cloth_before, sizeof cloth_def));
+    memset(&settings, 0xa5, sizeof settings);
     on.rows = 1;
     REFUSED(TAUT_ERROR_GRID_SIZE, taut_plan(&on, &def, &settings));
     REQUIRE(!memcmp(&settings, &untouched, sizeof settings));
