@@ -128,7 +128,7 @@ fn name(method: Method) -> &'static str {
         Method::Plain => "springs alone",
         Method::Inertia => "the inertia field",
         Method::Tethers => "tethers",
-        Method::Levels => "levels",
+        Method::Levels => "levels that keep a limit",
         Method::OneCycle => "one cycle through the levels",
         Method::Whole => "the fabric's own stiffness",
         Method::Implicit => "the implicit solver",
@@ -233,9 +233,11 @@ fn text(s: &Settings) -> String {
     }
     match (s.strain_limit, s.level_cycles) {
         (Some(limit), Some(0)) => text += &format!("  levels      that keep {:.2} %\n", 100.0 * limit),
-        (Some(_), Some(_)) => {
+        (Some(limit), Some(cycles)) => {
             text += &format!(
-                "  levels      1 cycle a substep that aims at no strain, 1 pass over the cloth, speed limit {}\n",
+                "  levels      {cycles} cycle a substep that aims at {:.0} % strain, passes over the cloth {}, speed limit {}\n",
+                100.0 * limit,
+                s.strain_passes.unwrap_or_default(),
                 s.speed_limit
             );
         }

@@ -6,6 +6,7 @@
 //! limits on the structural and diagonal links of that level; the displacement is handed down bilinearly. A limit holds for
 //! the chord between two particles, so that folds are free.
 
+use crate::aim::KEPT_WELL;
 use crate::force::Substep;
 use crate::layout::{Layout, copy, read, span, take, write};
 use crate::limit::{Reach, Sheet, Sweeps};
@@ -270,7 +271,7 @@ impl Cloth<'_> {
     pub(crate) fn apply_levels(&mut self, c: &Substep) {
         let aim = self.aim.share();
         // only where a cycle would move nothing it is left out: a threshold above that would kick
-        if self.is_within(c, aim) && self.tethers_are_slack() {
+        if self.is_within(c, aim, true) && self.tethers_are_slack() {
             self.aim.learn(0, || true, c.dt);
             return;
         }
@@ -293,7 +294,7 @@ impl Cloth<'_> {
         }
         self.levels.numbers = numbers;
         let mut aim = self.aim;
-        aim.learn(cycles, || self.is_kept_well(c), c.dt);
+        aim.learn(cycles, || self.is_within(c, KEPT_WELL, false), c.dt);
         self.aim = aim;
         self.finish_limits(c);
     }

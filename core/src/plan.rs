@@ -258,8 +258,8 @@ const MOST: u32 = 256;
 const ITERATIONS: u32 = 10;
 /// Tethers, levels and one cycle with fewer substeps were not measured; levels are planned with these.
 const LEAST_LIMITED: u32 = 2;
-/// The speed limit of one cycle in spacings a substep: it is for few substeps.
-const ONE_CYCLE_SPEED: f32 = 8.0;
+/// The speed limit of [`Method::OneCycle`] in spacings a substep: it is for few substeps.
+pub const ONE_CYCLE_SPEED: f32 = 8.0;
 /// What levels aim at as a share of the tolerance.
 const AIM: f32 = 0.98;
 /// No substep is cheaper than this in plain steps, wherever a law leads to.

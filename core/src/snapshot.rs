@@ -88,7 +88,8 @@ impl Cloth<'_> {
         if self.ambient.changed {
             h.floats(&self.ambient.numbers);
         }
-        for part in self.parts().into_iter().take(4).chain([self.aim.lowered()]) {
+        let [parts @ .., _] = self.parts();
+        for part in parts.into_iter().chain([self.aim.lowered()]) {
             if !part.is_empty() {
                 h.floats(part);
             }

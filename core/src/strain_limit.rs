@@ -1,7 +1,6 @@
 //! The strain limit (Provot 1995): after each substep no structural or diagonal spring is longer than its family allows, as
 //! far as the sweeps reach. What is moved is also given to the velocity, x += D and v += D/dt.
 
-use crate::aim::KEPT_WELL;
 use crate::force::Substep;
 use crate::layout::{Layout, copy, take};
 use crate::limit::{Reach, Sheet, Sweeps};
@@ -79,16 +78,11 @@ impl Cloth<'_> {
         simd::run(width, Sweeps { sheet: self.sheet(c, target, rows), sweeps });
     }
 
-    /// Whether a sweep that aims at a share of the limit would move nothing.
-    pub(crate) fn is_within(&mut self, c: &Substep, share: f32) -> bool {
+    /// Whether no structural link, or diagonal if they count, is beyond a share of its limit: with them, whether a sweep that aims
+    /// there would move nothing.
+    pub(crate) fn is_within(&mut self, c: &Substep, share: f32, diagonals: bool) -> bool {
         let (width, rows) = (self.width, self.rows());
-        simd::run(width, LongRows { sheet: self.sheet(c, share, rows), diagonals: true, any: true }).is_none()
-    }
-
-    /// Whether no structural link is beyond a share of its limit that a sheet well within it has.
-    pub(crate) fn is_kept_well(&mut self, c: &Substep) -> bool {
-        let (width, rows) = (self.width, self.rows());
-        simd::run(width, LongRows { sheet: self.sheet(c, KEPT_WELL, rows), diagonals: false, any: true }).is_none()
+        simd::run(width, LongRows { sheet: self.sheet(c, share, rows), diagonals, any: true }).is_none()
     }
 
     /// The first and the last row of some where a structural link is beyond its limit.
@@ -116,7 +110,7 @@ impl Cloth<'_> {
 
     /// The limit alone: positions and velocities.
     pub(crate) fn apply_strain_limit(&mut self, c: &Substep) {
-        if !self.is_within(c, TARGET) {
+        if !self.is_within(c, TARGET, true) {
             self.begin_limits();
             self.sweep_finest(c, TARGET);
             self.finish_limits(c);

@@ -262,22 +262,26 @@ fn pieces_that_touch_with_a_corner_do_not_hold_each_other() {
     assert!((fallen - 0.5 * 9.81 * 0.25 * (1.0 + 1.0 / 480.0)).abs() < 1e-3, "{fallen} m");
 }
 
+/// One cycle a substep that aims at no strain at all.
+fn one_cycle(substeps: u32) -> ClothDef {
+    ClothDef {
+        features: Features::LEVELS,
+        substeps,
+        strain_limit: [0.0; 3],
+        strain_passes: 1,
+        level_cycles: 1,
+        speed_limit: 8.0,
+        ..ClothDef::default()
+    }
+}
+
 /// One cycle a substep that aims at no strain at all: the falling sheet keeps nearly its length with few substeps, where
 /// tethers alone let it stretch; it falls as fast, and rests.
 #[test]
 fn one_cycle_a_substep_keeps_a_falling_sheet_short() {
     let n = 64;
     let fall = |features: Features| {
-        let def = ClothDef {
-            features,
-            substeps: 3,
-            strain_limit: [0.0; 3],
-            strain_passes: 1,
-            level_cycles: 1,
-            speed_limit: 8.0,
-            v_axis: [0.0, 0.0, 1.0],
-            ..ClothDef::default()
-        };
+        let def = ClothDef { features, v_axis: [0.0, 0.0, 1.0], ..one_cycle(3) };
         let mut c = cloth(&squares(n, n, 1.0 / 63.0, Families::ALL), &def);
         c.set_stiffness_uniform(AS_STIFF_AS_CAN_BE).unwrap();
         c.pin(0).unwrap();
@@ -324,17 +328,8 @@ fn rest(n: u32, whole_edge: bool, def: &ClothDef) -> (f32, f32) {
 #[test]
 fn one_cycle_rests_whatever_the_size() {
     for n in [22, 26, 35, 50] {
-        let def = ClothDef {
-            features: Features::LEVELS,
-            substeps: 12,
-            strain_limit: [0.0; 3],
-            strain_passes: 1,
-            level_cycles: 1,
-            speed_limit: 8.0,
-            ..ClothDef::default()
-        };
         for whole_edge in [false, true] {
-            let (speed, strain) = rest(n, whole_edge, &def);
+            let (speed, strain) = rest(n, whole_edge, &one_cycle(12));
             println!("{n}, {whole_edge}: {speed} m/s, {strain}");
             assert!(speed < 0.01 && strain < 0.01, "{n}, {whole_edge}: {speed} m/s, {strain}");
         }

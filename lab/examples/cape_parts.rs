@@ -6,6 +6,7 @@
 
 use cpu_time::ThreadTime;
 use taut::{Cloth, ClothDef, ColliderDef, Error, Features, Grid, GridDef, Pose, Shape, Vector3, Width};
+use taut_lab::block::Block;
 
 const COLUMNS: u32 = 16;
 const ROWS: u32 = 24;
@@ -34,10 +35,8 @@ fn walk((_, tethers, capsules): Part, width: Width, least: &mut [f64]) -> Result
         origin_m: [0.0, 1.5, -0.25],
         ..ClothDef::default()
     };
-    let numbers = Cloth::memory(&grid, &def)?;
-    let mut memory = vec![0.0f32; numbers + 16];
-    let first = memory.as_ptr().align_offset(64).min(16);
-    let mut cloth = Cloth::create(&grid, &def, &mut memory[first..first + numbers])?;
+    let mut block = Block::new(Cloth::memory(&grid, &def)?);
+    let mut cloth = Cloth::create(&grid, &def, block.numbers_mut())?;
     cloth.set_width(width)?;
     cloth.set_stiffness_uniform([1e6, 1e6, 3e5, 2e4])?;
     for column in 0..COLUMNS as usize {

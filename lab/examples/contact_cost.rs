@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 use taut::{Cloth, ClothDef, ColliderDef, Features, Grid, GridDef, Pose, Shape, Target, TargetLimit, Vector3};
+use taut_lab::block::Block;
 
 const ROUNDS: usize = 9;
 const FRAMES: u32 = 40;
@@ -15,7 +16,7 @@ const FRAMES: u32 = 40;
 fn made(side: u32, features: Features, prepare: impl Fn(&mut Cloth<'_>)) -> Cloth<'static> {
     let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).expect("a valid grid");
     let def = ClothDef { features, v_axis: [0.0, 0.0, 1.0], damping_per_s: 4.0, ..ClothDef::default() };
-    let block = vec![0.0; Cloth::memory(&grid, &def).expect("a valid definition")].leak();
+    let block = Block::leaked(Cloth::memory(&grid, &def).expect("a valid definition"));
     let mut cloth = Cloth::create(&grid, &def, block).expect("the block is large enough");
     cloth.set_stiffness_uniform([2000.0, 2000.0, 600.0, 20.0]).expect("a stiffness");
     prepare(&mut cloth);

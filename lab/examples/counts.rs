@@ -6,6 +6,7 @@
 use std::hint::black_box;
 
 use taut::Width;
+use taut_lab::block::Block;
 use taut_lab::cost::Load;
 
 /// Callgrind writes what it has counted before each call of this one, and begins anew.
@@ -43,10 +44,8 @@ fn main() -> Result<(), taut::Error> {
                 println!("SKIPPED {}/{}", width.name(), load.name());
                 continue;
             }
-            let numbers = load.memory(SIDE)?;
-            let mut memory = vec![0.0f32; numbers + 16];
-            let first = memory.as_ptr().align_offset(64).min(16);
-            let mut cloth = load.create(SIDE, width, &mut memory[first..first + numbers])?;
+            let mut block = Block::new(load.memory(SIDE)?);
+            let mut cloth = load.create(SIDE, width, block.numbers_mut())?;
             let steps = SIDE * SIDE * cloth.def().substeps * FRAMES;
             counts_mark();
             for _ in 0..FRAMES {

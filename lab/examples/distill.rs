@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use taut_lab::distill;
-use taut_lab::front::{Bench, Row, Set};
+use taut_lab::front::{Bench, Row, Set, least, rounds};
 use taut_lab::ledger::Ledger;
 use taut_lab::scene::Scene;
 
@@ -23,26 +23,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };
         let mut bench = Bench::new(Set::Quick, &mut none);
         let list = distill::list();
-        let mut rows: Vec<Option<Row>> = vec![None; list.len()];
-        // what the machine does beside only adds: the least of all rounds, and of the plain steps of all rows
-        let mut plain_ns = f64::INFINITY;
-        for round in 0..ROUNDS {
-            for (i, ((_, _, spec), least)) in list.iter().zip(&mut rows).enumerate() {
-                let key = format!("{round}/{}", spec.key());
-                if ledger.get(&key).is_none() {
-                    eprintln!("round {} of {ROUNDS}, {} of {}: {key}", round + 1, i + 1, list.len());
-                    ledger.add(&key, bench.measure(spec)?)?;
-                }
-                let row = ledger.get(&key).ok_or("no row")?;
-                plain_ns = plain_ns.min(row.ns_per_particle_step / row.cost_in_plain_steps);
-                if least.as_ref().is_none_or(|l| row.ns_per_particle_step < l.ns_per_particle_step) {
-                    *least = Some(row.clone());
-                }
-            }
-        }
-        let point = |((hold, method, spec), row): (&(_, &str, _), &Option<Row>)| {
-            let mut row = row.clone()?;
-            row.cost_in_plain_steps = row.ns_per_particle_step / plain_ns;
+        let specs: Vec<_> = list.iter().map(|(_, _, spec)| *spec).collect();
+        let rows = rounds(&mut bench, &mut ledger, &specs, ROUNDS, &mut |round, i, key| {
+            eprintln!("round {} of {ROUNDS}, {} of {}: {key}", round + 1, i + 1, specs.len());
+        })?;
+        // of all rows: what the machine does beside only adds
+        let plain_ns =
+            rows.iter().flatten().map(|r| r.ns_per_particle_step / r.cost_in_plain_steps).fold(f64::INFINITY, f64::min);
+        let point = |((hold, method, spec), rows): (&(_, &str, _), &Vec<Row>)| {
+            let least = least(rows)?;
+            let row = Row { cost_in_plain_steps: least.ns_per_particle_step / plain_ns, ..least.clone() };
             distill::point(*hold, method, spec, &row)
         };
         let points: Vec<_> = list.iter().zip(&rows).filter_map(point).collect();

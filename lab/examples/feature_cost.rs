@@ -6,6 +6,7 @@
 
 use cpu_time::ThreadTime;
 use taut::{Cloth, Width};
+use taut_lab::block::Block;
 use taut_lab::cost::Load;
 
 fn main() -> Result<(), taut::Error> {
@@ -21,11 +22,7 @@ fn main() -> Result<(), taut::Error> {
             .collect();
         let mut cloths: Vec<Cloth<'static>> = Vec::new();
         for load in &chosen {
-            let numbers = load.memory(side)?;
-            let memory = vec![0.0f32; numbers + 16].leak();
-            // a block that begins on a cache line
-            let first = memory.as_ptr().align_offset(64);
-            cloths.push(load.create(side, width, &mut memory[first..first + numbers])?);
+            cloths.push(load.create(side, width, Block::leaked(load.memory(side)?))?);
         }
         let mut least = vec![f64::INFINITY; cloths.len()];
         for _ in 0..rounds {

@@ -1,11 +1,11 @@
 //! The planner on grids, fabrics and scenes that its table was not made from: the share of picks that meet the tolerance, and
 //! their cost beside the best row. `cargo run --release -p taut-lab --example holdout [LEDGER.jsonl]`: with a ledger it can be
-//! interrupted and goes on, and another table is judged by the rows that are there. All rows of a scene are measured in three
+//! interrupted and goes on (of this program: a newer one needs a new ledger), and another table is judged by the rows that are there. All rows of a scene are measured in three
 //! rounds, of which the cheapest counts: what the machine does beside only adds. Costs are in ms of CPU a simulated second.
 
 use std::path::PathBuf;
 
-use taut_lab::front::{Bench, Row, Set, Spec};
+use taut_lab::front::{Bench, Row, Set, Spec, least, rounds};
 use taut_lab::holdout::{judge, summary};
 use taut_lab::ledger::Ledger;
 use taut_lab::scene::Scene;
@@ -20,28 +20,25 @@ const TOLERANCES: [f32; 4] = [0.01, 0.03, 0.06, 0.12];
 const ROUNDS: usize = 3;
 
 fn main() -> Result<(), String> {
-    let path = std::env::args().nth(1).map_or_else(|| std::env::temp_dir().join("taut-holdout.jsonl"), PathBuf::from);
-    let mut ledger: Ledger<Row> = Ledger::open(&path, &"holdout 3").map_err(|e| e.to_string())?;
+    let text = |e: &dyn std::fmt::Display| e.to_string();
+    let path = std::env::args().nth(1).map_or_else(
+        || {
+            let path = std::env::temp_dir().join("taut-holdout.jsonl");
+            // rows of another program would be judged
+            let _ = std::fs::remove_file(&path);
+            path
+        },
+        PathBuf::from,
+    );
+    let mut ledger: Ledger<Row> = Ledger::open(&path, &"holdout 3").map_err(|e| text(&e))?;
     let mut none = |_: &str, _: Scene, _: u32| -> Result<Vec<f32>, String> { Err("no generator".into()) };
     let mut bench = Bench::new(Set::Quick, &mut none);
     // the same machine for all rows of a scene: what a plain step takes beside would only add its own noise
     let cost = |_: &Spec, row: &Row| row.cpu_ms_per_simulated_s;
     let mut measure = |specs: &[Spec]| {
-        let mut least: Vec<Option<Row>> = vec![None; specs.len()];
-        for round in 0..ROUNDS {
-            for (spec, least) in specs.iter().zip(&mut least) {
-                let key = format!("{round}/{}", spec.key());
-                if ledger.get(&key).is_none() {
-                    eprintln!("{key}");
-                    ledger.add(&key, bench.measure(spec)?).map_err(|e| e.to_string())?;
-                }
-                let row = ledger.get(&key).ok_or("no row")?;
-                if least.as_ref().is_none_or(|l| cost(spec, row) < cost(spec, l)) {
-                    *least = Some(row.clone());
-                }
-            }
-        }
-        least.into_iter().collect::<Option<Vec<Row>>>().ok_or_else(|| "no row".into())
+        let rows = rounds(&mut bench, &mut ledger, specs, ROUNDS, &mut |_, _, key| eprintln!("{key}"));
+        let least = |rows: Vec<Row>| least(&rows).cloned();
+        rows.map_err(|e| text(&e))?.into_iter().map(least).collect::<Option<Vec<Row>>>().ok_or_else(|| "no row".into())
     };
     let mut all = Vec::new();
     println!("| row | tolerance % | told % | measured % | meets | cost | best | ratio | best row |");

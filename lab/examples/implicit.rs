@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 use taut::{Cloth, ClothDef, Features, Grid, GridDef, Solver, Vector3};
+use taut_lab::block::Block;
 
 const FRAMES: usize = 210;
 
@@ -46,8 +47,8 @@ fn with_cloth<T>(
     work: impl FnOnce(&mut Cloth<'_>) -> T,
 ) -> T {
     let grid = Grid::new(&GridDef { rows: side, columns: side, ..GridDef::default() }).expect("a valid grid");
-    let mut block = vec![0.0; Cloth::memory(&grid, def).expect("a valid definition")];
-    let mut c = Cloth::create(&grid, def, &mut block).expect("the block is large enough");
+    let mut block = Block::new(Cloth::memory(&grid, def).expect("a valid definition"));
+    let mut c = Cloth::create(&grid, def, block.numbers_mut()).expect("the block is large enough");
     c.set_stiffness_uniform(fabric.k).expect("a stiffness");
     let last = side as usize - 1;
     let pins = if scene == Scene::Edge { (0..=last).collect() } else { vec![0, last] };

@@ -11,6 +11,7 @@
 
 use cpu_time::ThreadTime;
 use taut::{Budget, Cloth, ClothDef, Features, Grid, GridDef, StepFlags, Width};
+use taut_lab::block::Block;
 
 /// A cloth that is stepped through the same frames again and again.
 struct Setting {
@@ -43,11 +44,7 @@ impl Setting {
             v_axis: if fall { [0.0, 0.0, 1.0] } else { [0.0, -1.0, 0.0] },
             ..ClothDef::default()
         };
-        let numbers = Cloth::memory(&grid, &def)?;
-        let memory = vec![0.0f32; numbers + 16].leak();
-        // a block that begins on a cache line
-        let first = memory.as_ptr().align_offset(64);
-        let mut cloth = Cloth::create(&grid, &def, &mut memory[first..first + numbers])?;
+        let mut cloth = Cloth::create(&grid, &def, Block::leaked(Cloth::memory(&grid, &def)?))?;
         cloth.set_width(width)?;
         cloth.set_stiffness_uniform(if fall { [1e8; 4] } else { [5000.0, 5000.0, 1500.0, 100.0] })?;
         cloth.pin(0)?;

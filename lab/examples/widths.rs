@@ -4,24 +4,18 @@
 //! `taskset -c 1 cargo run --release -p taut-lab --example widths`
 
 use taut::{Cloth, ClothDef, Families, Grid, GridDef, Width};
+use taut_lab::block::Block;
 use taut_lab::bound::Throughput;
 
 /// Time of a cell of the table.
 const RUN_MS: u128 = 700;
 
-/// An empty block that begins on a cache line, for which `memory` has room.
-fn aligned(memory: &mut Vec<f32>, numbers: usize) -> &mut [f32] {
-    memory.resize(numbers + 16, 0.0);
-    let first = memory.as_ptr().align_offset(64);
-    &mut memory[first..first + numbers]
-}
-
 /// ns per particle-step: least and lower quartile.
 fn measure(side: u32, families: Families, width: Width) -> (f64, f64) {
     let grid = Grid::new(&GridDef { rows: side, columns: side, families, ..GridDef::default() }).expect("a grid");
     let def = ClothDef::default();
-    let mut memory = Vec::new();
-    let block = aligned(&mut memory, Cloth::memory(&grid, &def).expect("a definition"));
+    let mut memory = Block::new(Cloth::memory(&grid, &def).expect("a definition"));
+    let block = memory.numbers_mut();
     let mut cloth = Cloth::create(&grid, &def, block).expect("the block is large enough");
     cloth.set_width(width).expect("it was asked for");
     cloth.set_stiffness_uniform([5000.0, 5000.0, 1500.0, 100.0]).expect("a stiffness");

@@ -19,6 +19,11 @@ impl Block {
         Block { numbers, first, count }
     }
 
+    /// The same, kept as long as the program runs.
+    pub fn leaked(count: usize) -> &'static mut [f32] {
+        Box::leak(Box::new(Block::new(count))).numbers_mut()
+    }
+
     /// The numbers.
     pub fn numbers_mut(&mut self) -> &mut [f32] {
         &mut self.numbers[self.first..self.first + self.count]

@@ -3,6 +3,7 @@
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use taut::field::FieldView;
+use taut::plan::ONE_CYCLE_SPEED;
 use taut::{Budget, Cloth, ClothDef, Error, Families, Features, Grid, GridDef, Solver, noise};
 
 use crate::block::Block;
@@ -216,7 +217,7 @@ impl Limits {
             ..*def
         };
         match self {
-            Limits::OneCycle(_) => ClothDef { level_cycles: 1, strain_passes: 1, speed_limit: 8.0, ..def },
+            Limits::OneCycle(_) => ClothDef { level_cycles: 1, strain_passes: 1, speed_limit: ONE_CYCLE_SPEED, ..def },
             _ => def,
         }
     }
